@@ -288,8 +288,8 @@ void count_branches(ChainGroup& group, Communicator const& communicator) {
     auto const largest = [&](std::int64_t value) {
         return static_cast<std::int64_t>(communicator.max(static_cast<double>(value)));
     };
-    group.branch_counts = {communicator.sum(own.paths), communicator.sum(own.runs),
-                           largest(own.phases), largest(own.levels), largest(own.depth)};
+    group.branches.of_all_ranks = {communicator.sum(own.paths), communicator.sum(own.runs),
+                                   largest(own.phases), largest(own.levels), largest(own.depth)};
 }
 
 /// Sets the inboard bodies of branched chains and cuts the chains into paths. Collective.
@@ -386,10 +386,10 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     }
     group.directions = directions_of(group);
     group.planar = group.directions == 2;
-    group.branched = scene::branches(any);
+    bool const branched = scene::branches(any);
     group.partition = dca::Partition(lengths, pairwise, communicator.size(), tips);
-    group.partition.whole_chains = group.branched;
-    if (group.branched || !options.shares.empty())
+    group.partition.whole_chains = branched;
+    if (branched || !options.shares.empty())
         dca::cut_by_shares(group.partition, communicator.size(), options.shares);
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
@@ -402,7 +402,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
     allocate(group);
     fill(group, scene, options.executor);
-    if (group.branched) fill_branches(group, scene, pairwise, communicator);
+    if (branched) fill_branches(group, scene, pairwise, communicator);
     if (!group.beads) fill_carried(group, scene);
     fill_restricted(group, scene, options.implicit);
     find_neighbours(group, communicator.rank());

@@ -87,12 +87,10 @@ struct ChainGroup {
     dca::Schedule schedule;
     /// Inboard body of each local body, -1 for first bodies; empty unless the chains are branched.
     std::vector<std::int64_t> inboard;
-    /// True if the chains are branched. A rank owns all bodies of such a chain, or none.
-    bool branched = false;
-    /// Paths of branched chains, which replace the runs, merges and roots of `schedule`.
+    /// Paths of branched chains, which replace the runs, merges and roots of `schedule`. A rank
+    /// owns all bodies of such a chain, or none.
     dca::Branches branches;
-    dca::BranchCounts branch_counts;
-    bool is_branched() const { return branched; }
+    bool is_branched() const { return branches.of_all_ranks.paths > 0; }
 
     // Arrays over local bodies.
     /// Number of local bodies.

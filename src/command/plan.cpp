@@ -71,7 +71,7 @@ struct TreeCounts {
 TreeCounts counts_of(ChainGroup const& group) {
     dca::ChainTree const& tree = longest_tree(group);
     if (!group.is_branched()) return {tree.runs, tree.levels(), tree.depth()};
-    dca::BranchCounts const& branched = group.branch_counts;
+    dca::BranchCounts const& branched = group.branches.of_all_ranks;
     return {branched.runs, branched.levels, branched.depth};
 }
 
@@ -84,8 +84,8 @@ std::string tree_text(ChainGroup const& group) {
             ? fmt::format(
                   "{} bodies in {} and {}: {} of up to {} bodies, then at most {} of "
                   "merges on a path",
-                  group.partition.bodies(), counted(group.branch_counts.paths, "path", "paths"),
-                  counted(group.branch_counts.phases, "phase", "phases"),
+                  group.partition.bodies(), counted(group.branches.of_all_ranks.paths, "path", "paths"),
+                  counted(group.branches.of_all_ranks.phases, "phase", "phases"),
                   counted(counts.runs, "run", "runs"), tree.run_length,
                   counted(counts.levels, "level", "levels"))
             : fmt::format("{} bodies: {} of up to {} bodies, then {} of merges", tree.bodies,

@@ -51,6 +51,8 @@ Field<1> halves_over(Field<1> const& length, Executor const&);
 template <class Space, class Fields = BeadFields>
 class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public ClosingDrifts {
     using Field3 = typename Space::template FieldOf<3>;
+    template <class T>
+    using List = typename Space::template List<T>;
     using Chains = BeadChainsIn<Fields>;
     static constexpr bool is_branched = std::is_same_v<Fields, BranchedFields>;
 
@@ -70,9 +72,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
                          [&](std::int64_t k) {
                              return scene.chains[group.scene_chain(k)].beads.position.back();
                          })),
-          is_first_(group.is_first),
-          has_link_(links_),
-          inboard_(group.inboard),
+          lists_{List<std::uint8_t>(group.is_first), List<std::uint8_t>(links_),
+                 List<std::int64_t>(group.inboard)},
           pieces_(piece_),
           tips_(tip_),
           mass_(group.mass),
@@ -409,10 +410,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     /// Views of all arrays for loops over beads.
     Chains chains() {
         Chains c;
-        if constexpr (is_branched) c.places.inboard_bead = inboard_.data();
+        if constexpr (is_branched) c.places.inboard_bead = lists_.inboard.data();
         c.places.size = group_.size;
-        c.places.is_first = is_first_.data();
-        c.places.has_link = has_link_.data();
+        c.places.is_first = lists_.is_first.data();
+        c.places.has_link = lists_.has_link.data();
         c.mass = mass_.view();
         c.inverse_mass = inverse_mass_.view();
         c.length = length_.view();
@@ -453,8 +454,11 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     Field<1> halves_;
     std::vector<LocalPiece> piece_;
     std::vector<HeldTip> tip_;
-    typename Space::template List<std::uint8_t> is_first_, has_link_;
-    typename Space::template List<std::int64_t> inboard_;
+    /// As BeadPlaces and BranchedPlaces.
+    struct Lists {
+        List<std::uint8_t> is_first, has_link;
+        List<std::int64_t> inboard;
+    } lists_;
     typename Space::template List<LocalPiece> pieces_;
     typename Space::template List<HeldTip> tips_;
     typename Space::template Fixed<1> mass_, inverse_mass_, length_, half_over_length_;

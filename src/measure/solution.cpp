@@ -17,14 +17,14 @@ void append(std::vector<double>& list, Vec3 const& v) {
 
 /// Returns the outboard end of the link on the inboard side of body k, W. `body`: index of body k
 /// in the scene.
-Vec3 link_end(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
+Vec3 link_end(ChainSpec const& chain, std::size_t k, SceneMotion const& at,
               std::size_t body) {
     return chain.is_linked()
                ? at.position[body] + to_matrix(at.orientation[body]) * chain.linked.inboard[k]
                : at.position[body];
 }
 /// Returns the inboard end of that link, W.
-Vec3 link_start(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
+Vec3 link_start(ChainSpec const& chain, std::size_t k, SceneMotion const& at,
                 std::size_t body) {
     if (k == 0) return chain.is_linked() ? chain.linked.anchor : chain.beads.anchor;
     std::size_t const before = scene::inboard_of(chain.parent, k), inboard = body - k + before;
@@ -34,7 +34,7 @@ Vec3 link_start(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot con
 }
 
 /// Returns the tension of link k. The force along the link is -tension towards the outboard bead.
-double tension(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
+double tension(ChainSpec const& chain, std::size_t k, SceneMotion const& at,
                std::size_t body, Vector<double, 6> const& wrench) {
     if (k == 0 && chain.base == Base::free) return 0.0;
     Vec3 const link = link_end(chain, k, at, body) - link_start(chain, k, at, body);
@@ -53,7 +53,7 @@ int accelerations_of(ChainSpec const& chain, std::size_t k) {
 
 Solution solution_of(ChainSystem& system) {
     ChainSystem::Accelerations const a = system.accelerations();
-    ChainSystem::Snapshot const at = system.snapshot();
+    SceneMotion const at = system.snapshot();
     Solution s;
     s.bead_force = a.bead_force;
     s.tip_force = a.tip_force;

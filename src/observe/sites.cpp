@@ -98,7 +98,7 @@ void Sites::add(ChainSpec const& chain, bool with_topology) {
     }
 }
 
-Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities,
+Frame Sites::part(SceneBodies const& bodies, bool velocities,
                   Executor const& executor) const {
     auto const first = static_cast<std::size_t>(bodies.first),
                end = first + bodies.motion.position.size();
@@ -113,7 +113,7 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities,
     Frame part;
     part.first_site = begin != sites_.end() ? begin->site : next_site_;
     part.first_body = turning != turning_.end() ? turning->number : next_turning_;
-    ChainSystem::Snapshot const& s = bodies.motion;
+    SceneMotion const& s = bodies.motion;
     auto const count = static_cast<std::size_t>(of_body(end) - begin);
     part.positions.resize(count);
     if (velocities) part.velocities.resize(count);
@@ -135,8 +135,8 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities,
 }
 
 /// `k`: index of the body among `bodies`.
-void Sites::add_state(ChainSystem::Bodies const& bodies, std::size_t k, Frame& part) const {
-    ChainSystem::Snapshot const& s = bodies.motion;
+void Sites::add_state(SceneBodies const& bodies, std::size_t k, Frame& part) const {
+    SceneMotion const& s = bodies.motion;
     part.orientations.push_back(s.orientation[k]);
     if (topology_.body_states) {
         part.body_positions.push_back(s.position[k]);

@@ -64,6 +64,8 @@ struct Branches {
     std::vector<PhaseLists> lists;
     /// Numbers of segments and joints in the lists.
     std::int64_t slots = 0, joints = 0;
+    /// Counts of all ranks, which those who know the ranks set.
+    BranchCounts of_all_ranks;
 
     std::int64_t phases() const { return static_cast<std::int64_t>(lists.size()); }
     std::int64_t paths() const { return std::max<std::int64_t>(0, std::ssize(first_of_path) - 1); }

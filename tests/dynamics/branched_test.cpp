@@ -60,7 +60,7 @@ void expect_dense(ChainSpec const& chain, std::uint64_t seed, Backend backend, d
     trees.push(forces);
     trees.system->evaluate();
     EXPECT_LE(trees.system->residual(), trees.system->residual_bound());
-    ChainSystem::Snapshot const s = trees.system->snapshot();
+    SceneMotion const s = trees.system->snapshot();
     std::vector<double> expected_along;
     std::vector<Vec3> const expected =
         DenseLinks(chain, s.position).accelerations(s.velocity, forces, expected_along);
@@ -241,7 +241,7 @@ class Motion {
         for (AbsoluteDynamics* const group : system_.absolute()) group->update_configuration();
         system_.forces_and_matrices(nullptr);
     }
-    ChainSystem::Snapshot snapshot() {
+    SceneMotion snapshot() {
         integrator_.observe();
         return system_.snapshot();
     }
@@ -309,7 +309,7 @@ TEST(BranchedChains, KeepEnergyToSecondOrderAndMomenta) {
     for (double const step : {0.004, 0.002, 0.001}) {
         Trees trees({grown(1, brush_parents(12, 5), Base::free)});
         Motion run(trees, {Integrator::rattle, step, 0, 0, 1, 1e-13});
-        ChainSystem::Snapshot const start = run.snapshot();
+        SceneMotion const start = run.snapshot();
         Momenta const before = momenta(trees.scene, start);
         double const energy = kinetic_energy(trees.scene, start);
         auto const count = static_cast<std::int64_t>(std::lround(0.2 / step));
@@ -360,7 +360,7 @@ std::pair<Mean, Mean> sample_stars(bool fixman) {
     run.steps(0, rest);
     for (std::int64_t frame = 0; frame < frames; ++frame) {
         run.steps(rest + frame * every, rest + (frame + 1) * every);
-        ChainSystem::Snapshot const s = run.snapshot();
+        SceneMotion const s = run.snapshot();
         for (std::size_t i = 0; i < stars; ++i) {
             Vec3 arm[3];
             for (std::size_t k = 0; k < 4; ++k) {

@@ -187,31 +187,19 @@ class BranchedSolver final : public ChainSolver {
           model_(group),
           mass_(group.mass),
           places_(group),
-          body_(branches_.body),
-          first_of_path_(branches_.first_of_path),
-          forks_(branches_.forks),
-          fork_(places_.fork),
-          ends_(places_.ends),
-          restricted_(places_.restricted),
-          inverse_mass_(branches_.forks.size()),
-          push_(branches_.forks.size()),
-          force_(branches_.forks.size()),
-          side_(static_cast<std::size_t>(side_paths())),
-          matrices_(branches_.slots),
-          biases_(branches_.slots),
-          joints_(branches_.joints),
-          offsets_(branches_.joints),
-          forces_(branches_.joints),
-          lost_(1),
-          sweeps_{BranchedLeaf(model_.view(), body_.data(), fork_.data(), ends_.data(), beads()),
-                  restricted_.data(),
-                  matrices_.view(),
-                  biases_.view(),
-                  joints_.view(),
-                  offsets_.view(),
-                  forces_.view(),
-                  lost_.data()} {
-        space_.put(lost_.data(), none_lost);
+          lists_(branches_, places_),
+          forks_(branches_.forks.size(), static_cast<std::size_t>(side_paths())),
+          records_(branches_.slots, branches_.joints),
+          sweeps_{BranchedLeaf(model_.view(), lists_.body.data(), lists_.fork.data(),
+                               lists_.ends.data(), forks_.beads()),
+                  lists_.restricted.data(),
+                  records_.matrices.view(),
+                  records_.biases.view(),
+                  records_.joints.view(),
+                  records_.offsets.view(),
+                  records_.forces.view(),
+                  records_.lost.data()} {
+        space_.put(records_.lost.data(), none_lost);
         for (PhaseLists const& lists : branches_.lists)
             tree_.emplace_back(lists.runs, lists.levels, lists.roots, branches_.slots,
                                places_.restricted, Sweeps::in_stage);
@@ -253,9 +241,9 @@ class BranchedSolver final : public ChainSolver {
     }
 
     void check() override {
-        unsigned long long const bad = space_.get(lost_.data());
+        unsigned long long const bad = space_.get(records_.lost.data());
         if (bad == none_lost) return;
-        space_.put(lost_.data(), none_lost);
+        space_.put(records_.lost.data(), none_lost);
         refuse_indefinite(group_, communicator_.rank(), branches_.body[at(bad)]);
     }
     void wait() override { space_.wait(); }
@@ -301,6 +289,46 @@ class BranchedSolver final : public ChainSolver {
         std::vector<std::uint8_t> ends, restricted;
     };
 
+    /// Constant lists in the memory of the space.
+    struct Lists {
+        Lists(Branches const& b, Places const& places)
+            : body(b.body),
+              first_of_path(b.first_of_path),
+              forks(b.forks),
+              fork(places.fork),
+              ends(places.ends),
+              restricted(places.restricted) {}
+        List<std::int64_t> body, first_of_path;
+        List<Fork> forks;
+        List<std::int32_t> fork;
+        List<std::uint8_t> ends, restricted;
+    };
+    /// Arrays of ForkBeads, and the inboard links of side paths.
+    struct Forks {
+        Forks(std::size_t forks, std::size_t side_paths)
+            : inverse_mass(forks), push(forks), force(forks), side(side_paths) {}
+        ForkBeads beads() { return {inverse_mass.data(), push.data(), force.data()}; }
+        Array<Sym3> inverse_mass;
+        Array<Vec3> push, force;
+        Array<SideLink> side;
+    };
+    /// Arrays of TreeSweeps; joints have the numbers of places.
+    struct Arrays {
+        Arrays(std::int64_t slots, std::int64_t of_joints)
+            : matrices(slots),
+              biases(slots),
+              joints(of_joints),
+              offsets(of_joints),
+              forces(of_joints),
+              lost(1) {}
+        Records<Sweeps::Matrices, Order::plain> matrices;
+        Records<Sweeps::Biases, Order::plain> biases;
+        Records<Sweeps::Joint, Order::by_body> joints;
+        Records<Sweeps::Offset, Order::by_body> offsets;
+        Records<Sweeps::State, Order::by_body> forces;
+        Array<unsigned long long> lost;
+    };
+
     /// Returns a space without threads, where that is another one.
     static Space alone(Space const& space) {
         if constexpr (std::is_same_v<Space, HostSpace>)
@@ -325,10 +353,15 @@ class BranchedSolver final : public ChainSolver {
         return branches_.phases() > 1 ? branches_.first_of_phase[1] : branches_.paths();
     }
     std::int64_t side_paths() const { return branches_.paths() - first_side(); }
-    ForkBeads beads() { return {inverse_mass_.data(), push_.data(), force_.data()}; }
     Folds folds() {
-        return {sweeps_,      forks_.data(),         beads(),     side_.data(), first_side(),
-                body_.data(), first_of_path_.data(), mass_.view()};
+        return {sweeps_,
+                lists_.forks.data(),
+                forks_.beads(),
+                forks_.side.data(),
+                first_side(),
+                lists_.body.data(),
+                lists_.first_of_path.data(),
+                mass_.view()};
     }
     /// Adds the seconds since `start`. If the space does not wait for its work, it does so only
     /// while measurement is on.
@@ -344,23 +377,11 @@ class BranchedSolver final : public ChainSolver {
     typename Space::Model model_;
     typename Space::template Fixed<1> mass_;
     Places const places_;
-    List<std::int64_t> body_, first_of_path_;
-    List<Fork> forks_;
-    List<std::int32_t> fork_;
-    List<std::uint8_t> ends_, restricted_;
-    // ForkBeads.
-    Array<Sym3> inverse_mass_;
-    Array<Vec3> push_, force_;
-    Array<SideLink> side_;
+    Lists lists_;
+    Forks forks_;
     // Trees of the phases.
     std::vector<typename Space::Tree> tree_;
-    // As in TreeSolver; joints have the numbers of places.
-    Records<Sweeps::Matrices, Order::plain> matrices_;
-    Records<Sweeps::Biases, Order::plain> biases_;
-    Records<Sweeps::Joint, Order::by_body> joints_;
-    Records<Sweeps::Offset, Order::by_body> offsets_;
-    Records<Sweeps::State, Order::by_body> forces_;
-    Array<unsigned long long> lost_;
+    Arrays records_;
     Sweeps sweeps_;
     bool measured_ = false;
     SolverReport report_;
