@@ -18,7 +18,7 @@ NAMES = {
     "gravity": (r"forces\.gravity|given_?\.gravity|Gravity\b", 18),
     "joint springs": (r"\.stiffness\b|\.springs\b|JointSpring\b", 16),
     "joint dampers": (r"\.damping\b|\.dampers\b|JointDamper\b", 8),
-    "wrenches": (r"\.wrench\b|wrench_force\b|wrench_torque\b|\.wrenches\b", 17),
+    "wrenches": (r"\.wrench\b|wrench_force\b|wrench_torque\b|\.wrenches\b", 19),
     "drag": (r"\.drag\b|(linear|angular)_drag\b|\.dragged\b|Drag\b", 1),
     "constant forces": (r"\bConstantForce\b|constant_forces?\b", 0),
     "Fixman potential": (r"\.fixman\b|FixmanTerm\b", 10),
