@@ -36,6 +36,8 @@ struct BodyResults {
     /// Constraint [torque, force] on body k at its inboard joint.
     std::vector<Vector<double, 6>> joint_force;
     std::vector<TipForce> tip_force;
+    /// Tension of each cross-link of the group, in the order of ChainGroup::crosslinks.
+    std::vector<double> crosslink_tension;
 };
 
 /// The larger of two numbers; NaN if either is NaN.

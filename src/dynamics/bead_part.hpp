@@ -35,6 +35,7 @@ struct PartPlaces {
     CATENA_HD_IN_PLACE bool linked(std::int64_t i) const { return i > 0 || !starts || to_anchor; }
     CATENA_HD_IN_PLACE bool to_ground(std::int64_t i) const { return i == 0 && starts; }
     CATENA_HD_IN_PLACE std::int64_t inboard(std::int64_t i) const { return i - 1; }
+    CATENA_HD_IN_PLACE std::int64_t outboard(std::int64_t i) const { return i; }
 };
 /// Counterpart of BeadFields for a part in registers.
 struct PartFields {
@@ -44,6 +45,7 @@ struct PartFields {
     template <int D>
     using Found = PartField<D>;
     using Biases = PartField<1>;
+    static constexpr bool has_crosslinks = false;
 };
 
 /// One thread's part of a chain: its beads' state, and its part of the tree.

@@ -156,6 +156,8 @@ class ChainSystem {
         std::vector<Vector<double, 6>> joint_force;
         /// Constraint wrench of each jointed tip, in scene order.
         std::vector<TipForce> tip_force;
+        /// Tension of each cross-link, in scene order.
+        std::vector<double> crosslink_tension = {};
     };
     /// Returns the results of the last evaluate() on rank 0. Collective.
     Accelerations accelerations();

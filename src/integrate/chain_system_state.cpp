@@ -328,8 +328,13 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
                         to_array<3>("", rates.qdd.view(), *executor_).values, joint);
         gather_to_scene(communicator_, group, 3, at_starts(group, rates.base_acceleration), base);
     }
-    return {triples(joint), triples(body),       bead_forces(),    triples(alpha),
-            triples(base),  joint_forces(found), tip_forces(found)};
+    Accelerations all{triples(joint), triples(body),       bead_forces(),    triples(alpha),
+                      triples(base),  joint_forces(found), tip_forces(found)};
+    // Cross-linked chains are one group, on one rank.
+    for (BodyResults const& r : found)
+        all.crosslink_tension.insert(all.crosslink_tension.end(), r.crosslink_tension.begin(),
+                                     r.crosslink_tension.end());
+    return all;
 }
 
 void ChainSystem::require_arrays(std::map<std::string, std::vector<double>> const& arrays,

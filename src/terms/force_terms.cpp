@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "scene/branch_limits.hpp"
@@ -72,7 +73,11 @@ std::string why_host_alone(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     if (d.given && !traits_of(d.integrator).on_gpu)
         return fmt::format("integrator {} works on the host", name_of(d.integrator));
-    return scene::has_branches(scene) ? "branched chains are computed on the host" : "";
+    auto const by_paths =
+        std::find_if(scene.chains.begin(), scene.chains.end(), scene::goes_by_paths);
+    return by_paths == scene.chains.end()
+               ? ""
+               : std::string(scene::kind_of_paths(*by_paths)) + " chains are computed on the host";
 }
 
 std::vector<char const*> keys_beside(std::initializer_list<char const*> before,
