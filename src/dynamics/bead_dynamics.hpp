@@ -255,8 +255,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         Chains const c = chains();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
         space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_swing(i); });
-        if constexpr (Fields::has_crosslinks)
-            each_crosslink([c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
+        Way{*this}.each_crosslink([c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
         solver_->solve({{}, force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
                        {{}, change_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
     }
@@ -320,7 +319,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         }
         template <class Action>
         void each_crosslink(Action const& action) const {
-            d.each_crosslink(action);
+            if constexpr (Fields::has_crosslinks) d.over_crosslinks(action);
         }
         void from_inboard() const {
             exchange_from_inboard(d.communicator_, d.group_, d.position_.view(), d.space_);
@@ -377,7 +376,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
     /// Calls action(link) for every cross-link.
     template <class Action>
-    void each_crosslink(Action const& action) const {
+    void over_crosslinks(Action const& action) const {
         space_.for_each(std::ssize(group_.crosslinks),
                         [action, first = group_.first_crosslink()] CATENA_LAMBDA(std::int64_t i) {
                             action(first + i);

@@ -45,7 +45,6 @@ struct PartFields {
     template <int D>
     using Found = PartField<D>;
     using Biases = PartField<1>;
-    static constexpr bool has_crosslinks = false;
 };
 
 /// One thread's part of a chain: its beads' state, and its part of the tree.
@@ -143,6 +142,8 @@ class BeadPart {
         }
         template <class Action>
         CATENA_HD_IN_PLACE void each_tip(Action const&) const {}
+        template <class Action>
+        CATENA_HD_IN_PLACE void each_crosslink(Action const&) const {}
         CATENA_EITHER_SIDE
         CATENA_HD_IN_PLACE void from_inboard() const {
             part->position_[0] = part->team_.from_before(part->position_[length]);

@@ -159,7 +159,7 @@ std::vector<std::string> note_cycles(std::vector<ImportedChain> const& chains,
     if (cycles == 0) return {};
     return {fmt::format(
         "{} of branched chains {} of links (particles {} and {} from 0{}) and {}: "
-        "links form no cycles.",
+        "only constraints become cross-links.",
         cycles == 1 ? "1 stiff bond" : fmt::format("{} stiff bonds", cycles),
         cycles == 1 ? "closes a cycle" : "close cycles", a, b, cycles == 1 ? "" : ", the first",
         cycles == 1 ? "stays a force" : "stay forces")};

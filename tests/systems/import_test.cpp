@@ -365,7 +365,22 @@ TEST_F(Import, BondsThatCloseCyclesOfBranchesAreNamed) {
     EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
     EXPECT_EQ(imported.notes.at(1),
               "1 stiff bond of branched chains closes a cycle of links (particles 0 and 3 from 0) "
-              "and stays a force: links form no cycles.");
+              "and stays a force: only constraints become cross-links.");
+}
+
+/// Nothing but a link holds what a constraint holds.
+TEST_F(Import, ConstraintsThatCloseCyclesBecomeCrossLinks) {
+    join_glycines();
+    for (int k = 1; k < 4; ++k) system->addConstraint(k - 1, k, 0.4);
+    system->addConstraint(3, 0, 0.5);
+    ImportedSystem const imported = import(wound(beads, 1));
+    ASSERT_TRUE(imported.chains[0].parent.empty());
+    EXPECT_EQ(imported.chains[0].crosslinks, (std::vector<CrossLink>{{0, 3, 0.5}}));
+    EXPECT_TRUE(imported.chains[1].crosslinks.empty());
+    EXPECT_EQ(imported.notes,
+              std::vector<std::string>{
+                  "1 constraint of chain A closes a cycle of links and becomes a cross-link: "
+                  "cross-linked chains run on one rank and on the host."});
 }
 
 /// A constraint that is no link could not stay: it outranks the spring to the bead before.
