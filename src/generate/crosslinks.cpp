@@ -251,6 +251,28 @@ void note_redundant(ChainSpec const& chain, Scene& scene) {
             elsewhere == 1 ? "it takes" : "they take"));
 }
 
+/// Moves the beads until all links have their lengths; `most` changes most.
+void close(ChainSpec& chain, CrossLink const& most, CrossLinkFit const& fit) {
+    std::vector<Vec3> const given = chain.beads.position;
+    char const* const unit = fit.scene.si ? "m" : "nm";
+    double const distance = distance_of(most, given),
+                 part = std::abs(distance - most.length) / most.length;
+    std::string const what =
+        fmt::format("{} are {:.4g} {} apart, their cross-link is {:.4g} {} long",
+                    ends_text(chain, most), distance, unit, most.length, unit);
+    if (!fit.far && !fit.scene.relax && part > largest_link_change)
+        fail(fit.from, what, "give positions that fit, or leave the length out");
+    if (!close_in_steps(chain, chain.beads.position))
+        fail(fit.from, what + ", and no positions nearby close all links",
+             "give other positions, or other lengths");
+    double moved = 0;
+    for (std::size_t k = 0; k < given.size(); ++k)
+        moved = std::max(moved, norm(chain.beads.position[k] - given[k]));
+    if (part >= noted_link_change && !fit.quiet)
+        fit.scene.note(fmt::format("{}: beads are moved by up to {:.3g} {} to close cross-links",
+                                   what, moved, unit));
+}
+
 }  // namespace
 
 std::int64_t redundant_links(ChainSpec const& chain) {
@@ -266,28 +288,9 @@ bool project_links(ChainSpec const& chain, std::vector<Vec3>& positions) {
 }
 
 void fit_crosslinks(ChainSpec& chain, CrossLinkFit const& fit) {
-    std::vector<Vec3> const given = chain.beads.position;
-    CrossLink const* const most = take_open_lengths(chain, fit.from);
-    if (most) {
-        char const* const unit = fit.scene.si ? "m" : "nm";
-        double const distance = distance_of(*most, given);
-        std::string const what =
-            fmt::format("{} are {:.4g} {} apart, their cross-link is {:.4g} {} long",
-                        ends_text(chain, *most), distance, unit, most->length, unit);
-        if (!fit.far && !fit.scene.relax &&
-            std::abs(distance - most->length) > largest_link_change * most->length)
-            fail(fit.from, what, "give positions that fit, or leave the length out");
-        if (!close_in_steps(chain, chain.beads.position))
-            fail(fit.from, what + ", and no positions nearby close all links",
-                 "give other positions, or other lengths");
-        double moved = 0;
-        for (std::size_t k = 0; k < given.size(); ++k)
-            moved = std::max(moved, norm(chain.beads.position[k] - given[k]));
-        fit.scene.note(fmt::format("{}: beads are moved by up to {:.3g} {} to close cross-links",
-                                   what, moved, unit));
-    }
+    if (CrossLink const* const most = take_open_lengths(chain, fit.from)) close(chain, *most, fit);
     chain.redundant_links = redundant_links(chain);
-    note_redundant(chain, fit.scene);
+    if (!fit.quiet) note_redundant(chain, fit.scene);
 }
 
 }  // namespace catena::scene

@@ -25,6 +25,8 @@ struct CrossLinkFit {
     Node const& from;
     /// True if positions are generated, so that beads may move far.
     bool far = false;
+    /// True if nothing is noted, as for further copies of a chain.
+    bool quiet = false;
 };
 /// Gives cross-links without a length, those of length 0, the distance of their beads. Moves the
 /// beads where others have another length, and sets ChainSpec::redundant_links. Throws InputError

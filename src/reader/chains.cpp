@@ -322,7 +322,7 @@ class ChainReader {
         // No bead of a branched chain is known to be the end of a protein.
         if (chain.is_branched()) request_.protein_ends = {false, false};
         join_tip(chain, tip_, request_);
-        cross_link(chain);
+        cross_link(chain, copy);
         if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);
         note_lost_rates(chain, request_);
@@ -331,7 +331,7 @@ class ChainReader {
 
     /// Adds the entry's cross-links. Where the System joins two beads its length counts, unless the
     /// entry gives one or has `links: as_given`.
-    void cross_link(ChainSpec& chain) const {
+    void cross_link(ChainSpec& chain, std::int64_t copy) const {
         Node const* const node = request_.fields.find("crosslinks");
         if (!node) return;
         chain.crosslinks = read_crosslinks(*node, chain);
@@ -342,7 +342,8 @@ class ChainReader {
                         request_.particle + link.inboard, request_.particle + link.outboard);
                     length > 0)
                     link.length = length;
-        fit_crosslinks(chain, {request_.scene, *node, source_.key != "bodies" && !is_given()});
+        bool const far = source_.key != "bodies" && !is_given();
+        fit_crosslinks(chain, {request_.scene, *node, far, copy > 0});
     }
 
     /// Sets the kind of start velocities and clears the given ones if they are not used. `given` is
