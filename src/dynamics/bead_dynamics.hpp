@@ -47,7 +47,7 @@ Field<1> halves_over(Field<1> const& length, Executor const&);
 
 /// State, arrays and operations of bead chains; DeviceBeads serves OpenMM on the same GPU,
 /// ClosingDrifts the closing of links.
-/// `Fields` is BranchedFields for branched chains.
+/// `Fields` is BranchedFields for branched and cross-linked chains.
 template <class Space, class Fields = BeadFields>
 class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public ClosingDrifts {
     using Field3 = typename Space::template FieldOf<3>;
@@ -86,10 +86,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
           force_(group.size),
           momentum_(group.size),
           change_(group.size),
-          direction_(group.size),
+          direction_(group.link_entries()),
           tip_direction_(group.has_tips() ? group.size : 0),
-          bias_(group.size + 1, group.directions),
-          joint_force_(group.size + 1, group.directions),
+          bias_(group.link_entries() + 1, group.directions),
+          joint_force_(group.link_entries() + 1, group.directions),
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions),
           ring_ends_(group, space, communicator) {
@@ -214,6 +214,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
         double const at_tips = space_.largest(
             tips(), [c] CATENA_LAMBDA(std::int64_t i) -> double { return c.tip_error(i); });
+        if constexpr (Fields::has_crosslinks) {
+            double across = 0;
+            for (std::int64_t i = 0; i < std::ssize(group_.crosslinks); ++i)
+                across = larger(across, c.error(group_.first_crosslink() + i));
+            return larger(larger(along, at_tips), across);
+        }
         return larger(along, at_tips);
     }
     double own_error_beyond(double tolerance) override {
@@ -251,6 +257,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         Chains const c = chains();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
         space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_swing(i); });
+        Way{*this}.each_crosslink([c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
         solver_->solve({{}, force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
                        {{}, change_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
     }
@@ -312,6 +319,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         void each_tip(Action const& action) const {
             d.space_.for_each(d.tips(), action);
         }
+        template <class Action>
+        void each_crosslink(Action const& action) const {
+            if constexpr (Fields::has_crosslinks) d.over_crosslinks(action);
+        }
         void from_inboard() const {
             exchange_from_inboard(d.communicator_, d.group_, d.position_.view(), d.space_);
             d.ring_ends_.take(d.position_.view(), d.position_.view());
@@ -361,7 +372,17 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
                 return false;
         for (std::int64_t i = 0; i < tips(); ++i)
             if (!(c.tip_error(i) <= tolerance)) return false;
+        for (std::int64_t i = 0; i < std::ssize(group_.crosslinks); ++i)
+            if (!(c.error(group_.first_crosslink() + i) <= tolerance)) return false;
         return true;
+    }
+    /// Calls action(link) for every cross-link.
+    template <class Action>
+    void over_crosslinks(Action const& action) const {
+        space_.for_each(std::ssize(group_.crosslinks),
+                        [action, first = group_.first_crosslink()] CATENA_LAMBDA(std::int64_t i) {
+                            action(first + i);
+                        });
     }
     /// The parts of a step, executed loop by loop.
     BeadStep<Way, Fields> parts() { return {chains(), {*this}}; }
@@ -410,7 +431,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     /// Views of all arrays for loops over beads.
     Chains chains() {
         Chains c;
-        if constexpr (is_branched) c.places.inboard_bead = lists_.inboard.data();
+        if constexpr (is_branched) {
+            c.places.inboard_bead = lists_.inboard.data();
+            c.places.crosslink = group_.crosslinks.data();
+        }
         c.places.size = group_.size;
         c.places.is_first = lists_.is_first.data();
         c.places.has_link = lists_.has_link.data();

@@ -47,6 +47,8 @@ class ChainSystem : public SystemEvaluator {
         std::vector<Vector<double, 6>> joint_force;
         /// Constraint wrench of each jointed tip, in scene order.
         std::vector<TipForce> tip_force;
+        /// Tension of each cross-link, in scene order.
+        std::vector<double> crosslink_tension = {};
     };
     /// Returns the results of the last evaluate() on rank 0. Collective.
     Accelerations accelerations();
@@ -75,6 +77,7 @@ class ChainSystem : public SystemEvaluator {
     bool is_free_of_potentials() const;
     std::vector<Vector<double, 6>> joint_forces(std::vector<BodyResults> const&) const;
     std::vector<TipForce> tip_forces(std::vector<BodyResults> const&) const;
+    std::vector<double> crosslink_tensions(std::vector<BodyResults> const&) const;
 };
 
 }  // namespace catena

@@ -122,6 +122,20 @@ std::vector<TipForce> ChainSystem::tip_forces(std::vector<BodyResults> const& re
     return all;
 }
 
+std::vector<double> ChainSystem::crosslink_tensions(std::vector<BodyResults> const& results) const {
+    std::vector<CrossLinkTension> own;
+    for (BodyResults const& r : results)
+        own.insert(own.end(), r.crosslink_tension.begin(), r.crosslink_tension.end());
+    // One rank has all cross-links of a chain, in their order.
+    std::vector<CrossLinkTension> all = gathered_blocks(communicator_, own).values;
+    std::stable_sort(
+        all.begin(), all.end(),
+        [](CrossLinkTension const& a, CrossLinkTension const& b) { return a.chain < b.chain; });
+    std::vector<double> tensions;
+    for (CrossLinkTension const& each : all) tensions.push_back(each.tension);
+    return tensions;
+}
+
 ChainSystem::Accelerations ChainSystem::accelerations() {
     std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
     std::vector<double> joint(3 * n), body(3 * n), base(3 * n), alpha(3 * n);
@@ -143,8 +157,8 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
                         to_array<3>("", rates.qdd.view(), *executor_).values, joint);
         gather_to_scene(communicator_, group, 3, at_starts(group, rates.base_acceleration), base);
     }
-    return {triples(joint), triples(body),       bead_forces(),    triples(alpha),
-            triples(base),  joint_forces(found), tip_forces(found)};
+    return {triples(joint), triples(body),       bead_forces(),     triples(alpha),
+            triples(base),  joint_forces(found), tip_forces(found), crosslink_tensions(found)};
 }
 
 }  // namespace catena

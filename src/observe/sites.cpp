@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scene/branches.hpp"
+
 namespace catena {
 
 Sites::Sites(Scene const& scene) : Sites(scene, {{0, scene.bodies()}}, true) {}
@@ -38,7 +40,7 @@ Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, boo
             {chain.name, static_cast<std::int64_t>(first), static_cast<std::int64_t>(count),
              all_beads, chain.is_ring(),
              static_cast<std::int64_t>(topology_.chains.size() / scene.chains_a_replica()),
-             chain.parent});
+             chain.parent, scene::ends_of_crosslinks(chain)});
     }
 }
 
@@ -98,8 +100,7 @@ void Sites::add(ChainSpec const& chain, bool with_topology) {
     }
 }
 
-Frame Sites::part(SceneBodies const& bodies, bool velocities,
-                  Executor const& executor) const {
+Frame Sites::part(SceneBodies const& bodies, bool velocities, Executor const& executor) const {
     auto const first = static_cast<std::size_t>(bodies.first),
                end = first + bodies.motion.position.size();
     auto const of_body = [&](std::size_t body) {

@@ -100,7 +100,11 @@ TEST(SameBits, BranchedChains) {
                       star =
                           "  - {name: s, base: fixed, generator: {star: {arms: 5, arm_length: "
                           "20, length: 0.4}}}\n";
-    for (std::string const& chains : {beads, beads + tree + generated("link", 300, false) + star})
+    std::string const crossed =
+        "  - {name: c, count: 4, generator: {freely_jointed: {beads: 60, "
+        "length: 0.4}}, crosslinks: [[3, 30], [20, 50]]}\n";
+    for (std::string const& chains :
+         {beads, beads + tree + generated("link", 300, false) + star, tree + crossed})
         expect_same_bits(scene_of(chains), chains, threads_fit(), {Handles::projected});
 }
 
