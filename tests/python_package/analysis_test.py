@@ -77,7 +77,7 @@ def chains_of(model, copies=3):
         moved = [dict(bead, position=[bead["position"][0], 0.9 * number, 0]) for bead in beads]
         model.add(f"peptide-{number + 1}", bodies=moved)
     model.set("box", {"periodic": [12, 12, 40]})
-    model.set("dynamics", {"integrator": "g-baoab", "step": 0.01, "temperature": 300, "friction": 1, "velocities": "thermal", "seed": 3, "steps": 400})
+    model.set("dynamics", {"integrator": "g-baoab", "step": 0.01, "temperature": 300, "friction": 1, "seed": 3, "steps": 400})
     return model.set("output", {"every": 10, "observables": ["temperature"]})
 
 
@@ -155,8 +155,8 @@ class Analyses(Case):
 
     def test_wrong_arguments_are_refused(self):
         x = chains(10, 12)
-        for arguments, words in (({"chains": [5, 6]}, "11 and the positions 12"), ({"chains": 5}, "no whole number"), ({"masses": np.ones(3)}, "3 masses"),
-                                 ({"residues": ["GLY"]}, "1 residues"), ({"slab": "w"}, "axis of the slab"), ({"slab": "z"}, r"slab=z\): leave slab out"),
+        for arguments, words in (({"chains": [5, 6]}, "11 beads and the positions 12"), ({"chains": 5}, "no whole number"), ({"masses": np.ones(3)}, "3 masses"),
+                                 ({"residues": ["GLY"]}, "1 residues"), ({"slab": "w"}, "axis of the slab"), ({"slab": "z"}, r"slab='z'\): leave slab out"),
                                  ({"discard": 1}, "discard"), ({"bins": 3}, "even"), ({"cutoff": -1}, "cutoff"), ({"box": [1, 2]}, "three positive edges"),
                                  ({"times": [1]}, "1 times"), ({"box": [9, 9, 9], "cutoff": 5}, r"exceeds half .*\(cutoff\)")):
             with self.assertRaisesRegex(catena.InputError, words):

@@ -36,8 +36,8 @@ class Quantity:
     def __str__(self) -> str:
         if not np.isfinite(self.mean):
             return f"- ({self.basis})"
-        least = "at least " if np.isfinite(self.error) and not self.plateau else ""
-        return f"{self.mean:.5g} +- {least}{self.error:.2g} {self.unit}".rstrip()
+        error = f" +- {'' if self.plateau else 'at least '}{self.error:.2g}" if np.isfinite(self.error) else ""
+        return f"{self.mean:.5g}{error} {self.unit}".rstrip()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -99,6 +99,7 @@ class Analysis:
         self.n_frames: int = found["frames"]
         self.times = None if times is None else times[len(times) - self.n_frames :]
         self.length_unit: str = found["length_unit"]
+        self.time_unit: str = found["time_unit"]
         #: Longest distance of a contact; 0 if there are no maps.
         self.cutoff: float = found["cutoff"]
         #: What was assumed or left out.

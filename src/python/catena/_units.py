@@ -26,16 +26,15 @@ def number_of(quantity: Any, key: str, si: bool) -> Any:
     Raises InputError for a key without unit, and for a quantity of another dimension.
     """
     wanted = _units_of_keys().get(_general(key), ())
-    for words in wanted:
-        powers = _powers(words, si)
-        if powers is None:
-            continue
+    known = [powers for words in wanted if (powers := _powers(words, si)) is not None]
+    if len(known) < max(1, len(wanted)):
+        reason = f"the unit of the key depends on other keys, {wanted[0]}" if wanted else "the key takes no unit"
+        raise InputError(f"{reason} ({key}): give a plain number instead of {quantity}")
+    for powers in known:
         try:
             return _openmm_number(quantity, powers) if hasattr(quantity, "value_in_unit") else _pint_number(quantity, powers)
         except TypeError:
             pass
-    if not wanted:
-        raise InputError(f"the key takes no unit ({key}): give a plain number instead of {quantity}")
     raise InputError(f"{quantity} does not have the unit of the key, {' or '.join(wanted)} ({key}): give such a quantity, or a plain number")
 
 

@@ -6,6 +6,7 @@ group the whole trajectory is read; lengths in angstrom become nm.
 
 from __future__ import annotations
 
+import re
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -162,7 +163,7 @@ def _analysis_of_frames(
 
 def _in_python(message: str) -> str:
     """Returns a message of the program with its options as the arguments that they are here."""
-    return message.replace("--slab ", "slab=").replace("--fit MIN,MAX", "fit=(least, most)").replace("--", "")
+    return re.sub(r"--slab ([xyz])", r"slab='\1'", message).replace("--fit MIN,MAX", "fit=(least, most)").replace("--", "")
 
 
 def _estimate_of(values: np.ndarray) -> Estimate:

@@ -27,16 +27,13 @@ def radius_of_gyration(source: Any, kind: str | None = None, *, times: Any = Non
     several copies the mean over copies is drawn. ``discard`` is the part of the frames that the mean leaves out.
     """
     if isinstance(source, Record):
-        times = source.times if times is None else times
         source = analysis.analyse(source, cutoff=0.0, slab=None)
     elif not isinstance(source, (Analysis, Estimate)):
         source = analysis.radius_of_gyration(source)
-    if isinstance(source, Analysis):
-        times = source.times if times is None else times
-        values, unit = source.series("radius_of_gyration", kind).mean(axis=1), source.length_unit
-    else:
-        values, unit = source.values, "nm"
-    return _series(values, times, f"radius of gyration [{unit}]", source, discard, axes)
+    if isinstance(source, Estimate):
+        return _series(source.values, times, "radius of gyration [nm]", "ps", discard, axes)
+    values = source.series("radius_of_gyration", kind).mean(axis=1)
+    return _series(values, source.times if times is None else times, f"radius of gyration [{source.length_unit}]", source.time_unit, discard, axes)
 
 
 def temperature(record: Record, *, discard: float = 0.0, axes: Any = None) -> Any:
@@ -44,7 +41,7 @@ def temperature(record: Record, *, discard: float = 0.0, axes: Any = None) -> An
     values = _record(record, "temperature").temperatures
     if np.isnan(values).any():
         raise InputError("the simulation has no temperature (record): see State.temperature")
-    return _series(values, record.times, "temperature [K]", record, discard, axes)
+    return _series(values, record.times, "temperature [K]", _time_unit(record), discard, axes)
 
 
 def energy(record: Record, *, axes: Any = None) -> Any:
@@ -53,7 +50,7 @@ def energy(record: Record, *, axes: Any = None) -> Any:
     axes = _axes(axes)
     for name, colour in zip(("total", "kinetic", "potential"), [_MEAN, *_COLOURS]):
         axes.plot(record.times, getattr(record, "total_energies" if name == "total" else f"{name}_energies"), color=colour, linewidth=1.1, label=name)
-    axes.set_xlabel(_time_label(record))
+    axes.set_xlabel(f"time [{_time_unit(record)}]")
     axes.set_ylabel(f"energy [{'J' if record.topology.si else 'kJ/mol'}]")
     axes.legend(frameon=False, fontsize="small")
     return axes
@@ -79,7 +76,8 @@ def internal_distances(source: Any, kind: str | None = None, *, axes: Any = None
     axes = _curve(curve, axes)
     if np.isfinite(exponent.mean):
         s = np.geomspace(*exponent.fit, 50)
-        label = f"$\\nu$ = {exponent.mean:.3f}" + (f" ± {exponent.error:.2g}" if np.isfinite(exponent.error) else "")
+        error = f" ± {'' if exponent.plateau else 'at least '}{exponent.error:.2g}" if np.isfinite(exponent.error) else ""
+        label = f"$\\nu$ = {exponent.mean:.3f}{error}"
         axes.plot(s, exponent.prefactor * s**exponent.mean, color=_COLOURS[1], linestyle="--", linewidth=1.3, label=label)
         axes.legend(frameon=False, fontsize="small")
     axes.set_xscale("log")
@@ -145,12 +143,11 @@ def _axes(axes: Any) -> Any:
     return pyplot.subplots(figsize=(5, 3.4), layout="constrained")[1] if axes is None else axes
 
 
-def _time_label(source: Any) -> str:
-    topology = getattr(source, "topology", None)
-    return "time [s]" if topology is not None and topology.si else "time [ps]"
+def _time_unit(record: Record) -> str:
+    return "s" if record.topology.si else "ps"
 
 
-def _series(values: np.ndarray, times: Any, label: str, source: Any, discard: float, axes: Any) -> Any:
+def _series(values: np.ndarray, times: Any, label: str, time_unit: str, discard: float, axes: Any) -> Any:
     """Draws a time series, and mean and error of what ``discard`` leaves."""
     if not 0 <= discard < 1:
         raise InputError(f"the part to leave out is {discard} (discard): give 0 or more, and less than 1")
@@ -166,7 +163,7 @@ def _series(values: np.ndarray, times: Any, label: str, source: Any, discard: fl
         text += f" ± {'' if found.plateau else 'at least '}{found.error:.2g}"
         axes.fill_between(x[first:], found.mean - found.error, found.mean + found.error, color=_MEAN, alpha=0.25, linewidth=0)
     axes.plot(x[first:], np.full(len(x) - first, found.mean), color=_MEAN, linewidth=1.3, label=text)
-    axes.set_xlabel("frame" if times is None else _time_label(source))
+    axes.set_xlabel("frame" if times is None else f"time [{time_unit}]")
     axes.set_ylabel(label)
     axes.legend(frameon=False, fontsize="small")
     return axes
