@@ -67,13 +67,21 @@ class VerletProxy final : public OpenMM::SerializationProxy {
 }  // namespace
 
 void ChainLangevinIntegrator::initialize(OpenMM::ContextImpl& made) {
-    solve_constraints(made, name);
+    solve_constraints(made, held(), name);
     LangevinMiddleIntegrator::initialize(made);
 }
 
 void ChainVerletIntegrator::initialize(OpenMM::ContextImpl& made) {
-    solve_constraints(made, name);
+    solve_constraints(made, held(), name);
     VerletIntegrator::initialize(made);
+}
+
+HeldConstraints& held_by(OpenMM::Integrator& integrator) {
+    auto* const held = dynamic_cast<HeldConstraints*>(&integrator);
+    if (held == nullptr)
+        throw InputError("an integrator that is not Catena's", "catena.openmm.prepared",
+                         "give a ChainLangevinIntegrator or a ChainVerletIntegrator");
+    return *held;
 }
 
 void register_integrators() {

@@ -6,11 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "plugin/held_constraints.hpp"
+
 namespace catena::plugin {
 
 /// OpenMM's LangevinMiddleIntegrator, with constraints solved by the divide-and-conquer algorithm.
 /// Whatever else applies constraints in its Context uses that solution too.
-class ChainLangevinIntegrator final : public OpenMM::LangevinMiddleIntegrator {
+class ChainLangevinIntegrator final : public OpenMM::LangevinMiddleIntegrator,
+                                      public HeldConstraints {
   public:
     /// Name in XML files, and of the class in messages.
     static constexpr char const* name = "ChainLangevinIntegrator";
@@ -23,7 +26,7 @@ class ChainLangevinIntegrator final : public OpenMM::LangevinMiddleIntegrator {
 };
 
 /// OpenMM's VerletIntegrator, with constraints solved as ChainLangevinIntegrator does.
-class ChainVerletIntegrator final : public OpenMM::VerletIntegrator {
+class ChainVerletIntegrator final : public OpenMM::VerletIntegrator, public HeldConstraints {
   public:
     static constexpr char const* name = "ChainVerletIntegrator";
     using OpenMM::VerletIntegrator::VerletIntegrator;
@@ -31,6 +34,9 @@ class ChainVerletIntegrator final : public OpenMM::VerletIntegrator {
   protected:
     void initialize(OpenMM::ContextImpl& made) override;
 };
+
+/// Returns the constraints that an integrator holds. Throws InputError if it is not one of these.
+HeldConstraints& held_by(OpenMM::Integrator& integrator);
 
 /// Makes the integrators known to OpenMM's XmlSerializer. Further calls do nothing. Throws
 /// InputError if the OpenMM library in memory has another version than that of the build.

@@ -211,14 +211,25 @@ class LinksOf final : public GroupLinks {
     bool assembled_ = false;
 };
 
+/// Number of threads that pay for so many constraints: loops over fewer are as fast on one.
+int worthwhile(int threads, std::size_t constraints) {
+    std::size_t constexpr worth_a_thread = 8192;
+    if (!openmp_is_built()) return 1;
+    return std::min(threads,
+                    static_cast<int>(std::max<std::size_t>(constraints / worth_a_thread, 1)));
+}
+
+std::unique_ptr<Executor> make_executor(int threads) {
+    return threads > 1 ? openmp_executor(threads) : serial_executor();
+}
+
 class Solver final : public LinkSolver {
   public:
     Solver(std::vector<double> const& mass, std::vector<Constraint> const& constraints, int threads,
            std::string const& user)
         : chains_(constraint_chains(mass, constraints, user)),
           communicator_(serial_communicator()),
-          executor_(threads > 1 && openmp_is_built() ? openmp_executor(threads)
-                                                     : serial_executor()),
+          executor_(make_executor(worthwhile(threads, constraints.size()))),
           groups_(make_groups(chains_.scene, Axes::world, Handles::projected, false, *communicator_,
                               {.implicit = false, .shares = {}, .executor = *executor_})) {
         HostSpace const space(*executor_);

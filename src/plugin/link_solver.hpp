@@ -28,8 +28,8 @@ class LinkSolver {
     virtual void project(std::span<Vec3 const> positions, std::span<Vec3> velocities) = 0;
 };
 
-/// Returns the solver of constraints, on `threads` threads. The results do not depend on their
-/// number. `user` and exceptions: constraint_chains().
+/// Returns the solver of constraints, on at most `threads` threads. The results do not depend on
+/// their number. `user` and exceptions: constraint_chains().
 std::unique_ptr<LinkSolver> make_link_solver(std::vector<double> const& mass,
                                              std::vector<Constraint> const& constraints,
                                              int threads, std::string const& user);

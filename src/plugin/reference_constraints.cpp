@@ -10,6 +10,7 @@
 #include <set>
 
 #include "error.hpp"
+#include "plugin/held_constraints.hpp"
 #include "plugin/link_solver.hpp"
 
 namespace catena::plugin {
@@ -72,15 +73,15 @@ std::set<int> settled(OpenMM::ReferenceConstraints const& constraints) {
 
 /// Constraints that OpenMM would solve by CCMA. Like OpenMM, it skips those between two particles
 /// without mass.
-std::vector<Constraint> constraints_of(OpenMM::System const& system, std::set<int> const& settled) {
-    std::vector<Constraint> found;
-    for (int i = 0; i < system.getNumConstraints(); ++i) {
-        Constraint c;
-        system.getConstraintParameters(i, c.first, c.second, c.distance);
-        bool const moves =
-            system.getParticleMass(c.first) != 0 || system.getParticleMass(c.second) != 0;
-        if (moves && !settled.contains(c.first)) found.push_back(c);
-    }
+std::vector<Constraint> open_constraints(OpenMM::System const& system,
+                                         std::vector<Constraint> found,
+                                         std::set<int> const& settled) {
+    std::vector<Constraint> const present = constraints_in(system);
+    found.insert(found.end(), present.begin(), present.end());
+    std::erase_if(found, [&](Constraint const& c) {
+        return settled.contains(c.first) ||
+               (system.getParticleMass(c.first) == 0 && system.getParticleMass(c.second) == 0);
+    });
     return found;
 }
 
@@ -93,7 +94,8 @@ int threads_of(OpenMM::ContextImpl& context) {
 
 }  // namespace
 
-void solve_constraints(OpenMM::ContextImpl& context, std::string const& user) {
+void solve_constraints(OpenMM::ContextImpl& context, std::vector<Constraint> const& held,
+                       std::string const& user) {
     std::string const platform = context.getPlatform().getName();
     if (platform != "Reference" && platform != "CPU")
         throw InputError(user + " on the platform " + platform, "Context",
@@ -103,7 +105,7 @@ void solve_constraints(OpenMM::ContextImpl& context, std::string const& user) {
     OpenMM::ReferenceConstraints& constraints = *data->constraints;
     if (dynamic_cast<ChainConstraints*>(constraints.ccma) != nullptr) return;
     OpenMM::System const& system = context.getSystem();
-    std::vector<Constraint> const open = constraints_of(system, settled(constraints));
+    std::vector<Constraint> const open = open_constraints(system, held, settled(constraints));
     if (open.empty()) return;
     std::vector<double> mass;
     for (int k = 0; k < system.getNumParticles(); ++k) mass.push_back(system.getParticleMass(k));

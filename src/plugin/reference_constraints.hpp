@@ -2,6 +2,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "plugin/constraint_chains.hpp"
 
 namespace OpenMM {
 class ContextImpl;
@@ -11,8 +14,10 @@ namespace catena::plugin {
 
 /// Replaces the solver of all constraints in a Context that OpenMM would solve by CCMA. Those that
 /// OpenMM solves by SETTLE (rigid water) stay with it. The Context must be on the platform
-/// Reference or CPU. `user` names the integrator for messages. The second call in a Context does
-/// nothing. Throws InputError where constraint_chains() does and on another platform.
-void solve_constraints(OpenMM::ContextImpl& context, std::string const& user);
+/// Reference or CPU. `held`: constraints that the System lacks at present. `user` names the
+/// integrator for messages. The second call in a Context does nothing. Throws InputError where
+/// constraint_chains() does and on another platform.
+void solve_constraints(OpenMM::ContextImpl& context, std::vector<Constraint> const& held,
+                       std::string const& user);
 
 }  // namespace catena::plugin

@@ -1,0 +1,123 @@
+// Taking constraints out of a System, and putting them back.
+#include "plugin/held_constraints.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "error.hpp"
+
+namespace catena::plugin {
+namespace {
+
+constexpr char const* where = "catena.openmm.prepared";
+
+/// Throws InputError for what OpenMM checks of constraints when it creates a Context.
+void check(OpenMM::System const& system, std::vector<Constraint> const& constraints) {
+    std::set<std::pair<int, int>> pairs;
+    auto const refuse = [](Constraint const& c, char const* what, char const* remedy) {
+        throw InputError(what, fmt::format("System, particles {} and {}", c.first, c.second),
+                         remedy);
+    };
+    for (Constraint const& c : constraints) {
+        if (std::min(c.first, c.second) < 0 || c.first == c.second ||
+            std::max(c.first, c.second) >= system.getNumParticles())
+            refuse(c, "a constraint between impossible particles", "name two of the System");
+        if ((system.getParticleMass(c.first) == 0) != (system.getParticleMass(c.second) == 0))
+            refuse(c, "a constraint of a massless particle", "give it a mass");
+        if (!pairs.insert(std::minmax(c.first, c.second)).second)
+            refuse(c, "two constraints between the same particles", "leave one out");
+    }
+    for (int i = 0; i < system.getNumForces(); ++i)
+        if (dynamic_cast<OpenMM::AndersenThermostat const*>(&system.getForce(i)) != nullptr)
+            throw InputError(
+                "an AndersenThermostat, which reads constraints when a Context is made", where,
+                "create the Context without `prepared`");
+}
+
+/// Number of constraints of every particle.
+std::vector<int> counts(int particles, std::vector<Constraint> const& constraints) {
+    std::vector<int> count(static_cast<std::size_t>(particles), 0);
+    for (Constraint const& c : constraints)
+        ++count[std::size_t(c.first)], ++count[std::size_t(c.second)];
+    return count;
+}
+
+/// Marks the constraints of triangles: three particles with constraints among themselves alone.
+std::vector<bool> in_triangles(int particles, std::vector<Constraint> const& constraints) {
+    std::vector<int> const count = counts(particles, constraints);
+    std::vector<std::array<int, 2>> neighbours(count.size(), {-1, -1});
+    auto const add = [&](int of, int neighbour) {
+        auto& [first, second] = neighbours[std::size_t(of)];
+        (first < 0 ? first : second) = neighbour;
+    };
+    for (Constraint const& c : constraints) add(c.first, c.second), add(c.second, c.first);
+    auto const third = [&](int of, int besides) {
+        auto const& [first, second] = neighbours[std::size_t(of)];
+        return first == besides ? second : first;
+    };
+    std::vector<bool> marks;
+    for (Constraint const& c : constraints) {
+        bool marked = count[std::size_t(c.first)] == 2 && count[std::size_t(c.second)] == 2;
+        int const apex = third(c.first, c.second);
+        marked = marked && apex == third(c.second, c.first) && count[std::size_t(apex)] == 2;
+        marks.push_back(marked);
+    }
+    return marks;
+}
+
+void add_to(OpenMM::System& system, Constraint const& c) {
+    system.addConstraint(c.first, c.second, c.distance);
+}
+
+void remove_all(OpenMM::System& system) {
+    for (int i = system.getNumConstraints(); i-- > 0;) system.removeConstraint(i);
+}
+
+}  // namespace
+
+std::vector<Constraint> constraints_in(OpenMM::System const& system) {
+    std::vector<Constraint> all(static_cast<std::size_t>(system.getNumConstraints()));
+    for (int i = 0; i < system.getNumConstraints(); ++i) {
+        Constraint& c = all[std::size_t(i)];
+        system.getConstraintParameters(i, c.first, c.second, c.distance);
+    }
+    return all;
+}
+
+void HeldConstraints::take(OpenMM::System& system) {
+    if (!all_.empty())
+        throw InputError("constraints that are held already", where,
+                         "use it once at a time for each integrator");
+    std::vector<Constraint> all = constraints_in(system);
+    check(system, all);
+    std::vector<bool> const stays = in_triangles(system.getNumParticles(), all);
+    remove_all(system);
+    held_.clear();
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (stays[i])
+            add_to(system, all[i]);
+        else
+            held_.push_back(all[i]);
+    left_ = system.getNumConstraints();
+    all_ = std::move(all);
+}
+
+void HeldConstraints::put_back(OpenMM::System& system) {
+    bool const changed = system.getNumConstraints() != left_;
+    if (changed) {
+        for (Constraint const& c : held_) add_to(system, c);
+    } else {
+        remove_all(system);
+        for (Constraint const& c : all_) add_to(system, c);
+    }
+    all_.clear();
+    held_.clear();
+    if (changed)
+        throw InputError("a System whose constraints have changed", where,
+                         "change them before or after it");
+}
+
+}  // namespace catena::plugin

@@ -1,0 +1,35 @@
+// Constraints that a System lacks while its Context is created.
+#pragma once
+
+#include <OpenMM.h>
+
+#include <vector>
+
+#include "plugin/constraint_chains.hpp"
+
+namespace catena::plugin {
+
+/// Constraints of a System, kept from OpenMM while a Context is created: OpenMM's preparation of
+/// CCMA takes time that grows with the square of their number. Base of the integrators.
+class HeldConstraints {
+  public:
+    virtual ~HeldConstraints() = default;
+    /// Takes the constraints out of the System, except those of three particles among themselves
+    /// (rigid water). Throws InputError if they are held already, if a force of the System reads
+    /// constraints when a Context is created, and if OpenMM would refuse the constraints.
+    void take(OpenMM::System& system);
+    /// Puts the constraints back, in their order. Throws InputError if the System has got others
+    /// meanwhile; it then has both.
+    void put_back(OpenMM::System& system);
+    std::vector<Constraint> const& held() const { return held_; }
+
+  private:
+    /// all_: all constraints of the System; left_: how many stayed there.
+    std::vector<Constraint> all_, held_;
+    int left_ = 0;
+};
+
+/// The constraints of a System.
+std::vector<Constraint> constraints_in(OpenMM::System const& system);
+
+}  // namespace catena::plugin
