@@ -85,10 +85,10 @@ HeldConstraints& held_by(OpenMM::Integrator& integrator) {
 }
 
 void register_integrators() {
-    std::string const version = OpenMM::Platform::getOpenMMVersion();
-    if (version != CATENA_OPENMM_VERSION)
-        throw InputError("catena was built for OpenMM " CATENA_OPENMM_VERSION, "OpenMM " + version,
-                         "install that version, or install catena again");
+    std::string const version = OpenMM::Platform::getOpenMMVersion(), series = CATENA_OPENMM_SERIES;
+    if (version != series && !version.starts_with(series + "."))
+        throw InputError("catena was built for OpenMM " + series, "OpenMM " + version,
+                         "install that series, or install catena again");
     static bool const done = [] {
         OpenMM::SerializationProxy::registerProxy(typeid(ChainLangevinIntegrator),
                                                   new LangevinProxy);

@@ -11,6 +11,5 @@ void add_model(nanobind::module_& module);
 void add_solution(nanobind::module_& module);
 void add_simulation(nanobind::module_& module);
 void add_analysis(nanobind::module_& module);
-void add_openmm(nanobind::module_& module);
 
 }  // namespace catena::python

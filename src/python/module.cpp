@@ -37,5 +37,4 @@ NB_MODULE(_core, module) {
     catena::python::add_solution(module);
     catena::python::add_simulation(module);
     catena::python::add_analysis(module);
-    catena::python::add_openmm(module);
 }

@@ -13,7 +13,6 @@ import contextlib
 from collections.abc import Iterator
 from typing import Any
 
-from catena import _core
 from catena.errors import InputError
 
 try:
@@ -21,13 +20,15 @@ try:
     from openmm import unit
 except ImportError as error:
     raise ImportError(f"catena.openmm needs OpenMM ({error}): pip install openmm, then install catena again") from error
-
-if not _core.has_openmm_integrators:
-    raise ImportError(
-        "catena.openmm: catena was built without PyPI's openmm package: pip install openmm, then install catena again"
-    )
 try:
-    _core.register_openmm_integrators()
+    from catena import _integrators  # after openmm, which loads the library that it needs
+except ImportError as error:
+    raise ImportError(
+        f"catena was built without PyPI's openmm package, or for another OpenMM than {openmm.__version__} ({error}): "
+        "install catena again"
+    ) from error
+try:
+    _integrators.register()
 except InputError as error:
     raise ImportError(str(error)) from None
 
@@ -79,8 +80,8 @@ def prepared(system: openmm.System, integrator: openmm.Integrator) -> Iterator[N
     Within the statement the System lacks its constraints, so OpenMM prepares nothing, and the integrator knows them.
     Only create or reinitialise the Context or Simulation within it.
     """
-    _core.take_constraints(int(system.this), int(integrator.this))
+    _integrators.take_constraints(int(system.this), int(integrator.this))
     try:
         yield
     finally:
-        _core.put_constraints_back(int(system.this), int(integrator.this))
+        _integrators.put_constraints_back(int(system.this), int(integrator.this))

@@ -1,27 +1,23 @@
-// Integrators for plain OpenMM scripts. OpenMM's own Python package wraps them: it makes them from
-// XML, and knows their base classes.
+// The extension module catena._integrators: integrators for plain OpenMM scripts. OpenMM's own
+// Python package makes them from XML and wraps them by their base classes.
+#include <nanobind/nanobind.h>
+
 #include <cstdint>
 
-#include "bindings.hpp"
-
-#if CATENA_PYTHON_OPENMM_PLUGIN
 #include "error.hpp"
 #include "plugin/integrators.hpp"
-#endif
 
 namespace nb = nanobind;
 
-namespace catena::python {
-
-#if CATENA_PYTHON_OPENMM_PLUGIN
+namespace catena::plugin {
 namespace {
 
 // OpenMM's Python package gives the addresses of its C++ objects as numbers.
 OpenMM::System& system_at(std::uintptr_t address) {
     return *reinterpret_cast<OpenMM::System*>(address);
 }
-plugin::HeldConstraints& held_at(std::uintptr_t integrator) {
-    return plugin::held_by(*reinterpret_cast<OpenMM::Integrator*>(integrator));
+HeldConstraints& held_at(std::uintptr_t integrator) {
+    return held_by(*reinterpret_cast<OpenMM::Integrator*>(integrator));
 }
 
 /// Calls `action`; what is wrong with its input becomes an InputError of the package.
@@ -29,7 +25,7 @@ template <class Action>
 void translated(Action const& action) {
     try {
         action();
-    } catch (catena::InputError const& error) {
+    } catch (InputError const& error) {
         nb::object const type = nb::module_::import_("catena.errors").attr("InputError");
         PyErr_SetString(type.ptr(), error.what());
         throw nb::python_error();
@@ -37,13 +33,13 @@ void translated(Action const& action) {
 }
 
 }  // namespace
-#endif
+}  // namespace catena::plugin
 
-void add_openmm(nb::module_& module) {
-    module.attr("has_openmm_integrators") = CATENA_PYTHON_OPENMM_PLUGIN != 0;
-#if CATENA_PYTHON_OPENMM_PLUGIN
+NB_MODULE(_integrators, module) {
+    using namespace catena::plugin;
+    module.doc() = "Integrators for OpenMM in C++; use catena.openmm.";
     module.def(
-        "register_openmm_integrators", [] { translated(plugin::register_integrators); },
+        "register", [] { translated(register_integrators); },
         "Makes Catena's integrators known to OpenMM's XmlSerializer.");
     module.def(
         "take_constraints",
@@ -57,7 +53,4 @@ void add_openmm(nb::module_& module) {
             translated([&] { held_at(integrator).put_back(system_at(system)); });
         },
         "Puts back what take_constraints() has taken.");
-#endif
 }
-
-}  // namespace catena::python
