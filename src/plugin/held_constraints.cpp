@@ -37,35 +37,26 @@ void check(OpenMM::System const& system, std::vector<Constraint> const& constrai
                 "create the Context without `prepared`");
 }
 
-/// Number of constraints of every particle.
-std::vector<int> counts(int particles, std::vector<Constraint> const& constraints) {
-    std::vector<int> count(static_cast<std::size_t>(particles), 0);
-    for (Constraint const& c : constraints)
-        ++count[std::size_t(c.first)], ++count[std::size_t(c.second)];
-    return count;
-}
+/// A particle's constraints, as far as there are two.
+struct Ends {
+    int count = 0;
+    std::array<int, 2> particle{-1, -1};
+    std::array<float, 2> distance{};
 
-/// Marks the constraints of triangles: three particles with constraints among themselves alone.
-std::vector<bool> in_triangles(int particles, std::vector<Constraint> const& constraints) {
-    std::vector<int> const count = counts(particles, constraints);
-    std::vector<std::array<int, 2>> neighbours(count.size(), {-1, -1});
-    auto const add = [&](int of, int neighbour) {
-        auto& [first, second] = neighbours[std::size_t(of)];
-        (first < 0 ? first : second) = neighbour;
-    };
-    for (Constraint const& c : constraints) add(c.first, c.second), add(c.second, c.first);
-    auto const third = [&](int of, int besides) {
-        auto const& [first, second] = neighbours[std::size_t(of)];
-        return first == besides ? second : first;
-    };
-    std::vector<bool> marks;
-    for (Constraint const& c : constraints) {
-        bool marked = count[std::size_t(c.first)] == 2 && count[std::size_t(c.second)] == 2;
-        int const apex = third(c.first, c.second);
-        marked = marked && apex == third(c.second, c.first) && count[std::size_t(apex)] == 2;
-        marks.push_back(marked);
+    void add(int neighbour, double to) {
+        if (count < 2) {
+            particle[std::size_t(count)] = neighbour;
+            distance[std::size_t(count)] = static_cast<float>(to);
+        }
+        ++count;
     }
-    return marks;
+    /// Index of the constraint that does not lead to a particle.
+    std::size_t beside(int other) const { return particle[0] == other ? 1 : 0; }
+};
+
+/// True if two distances of a triangle are equal in single precision, as SETTLE requires.
+bool is_isosceles(float first, float second, float third) {
+    return first == second || second == third || third == first;
 }
 
 void add_to(OpenMM::System& system, Constraint const& c) {
@@ -87,13 +78,32 @@ std::vector<Constraint> constraints_in(OpenMM::System const& system) {
     return all;
 }
 
+std::vector<bool> left_to_settle(int particles, std::vector<Constraint> const& constraints) {
+    std::vector<Ends> ends(static_cast<std::size_t>(particles));
+    for (Constraint const& c : constraints) {
+        ends[std::size_t(c.first)].add(c.second, c.distance);
+        ends[std::size_t(c.second)].add(c.first, c.distance);
+    }
+    std::vector<bool> marks;
+    for (Constraint const& c : constraints) {
+        Ends const &first = ends[std::size_t(c.first)], &second = ends[std::size_t(c.second)];
+        std::size_t const i = first.beside(c.second), j = second.beside(c.first);
+        int const apex = first.particle[i];
+        marks.push_back(
+            first.count == 2 && second.count == 2 && apex == second.particle[j] &&
+            ends[std::size_t(apex)].count == 2 &&
+            is_isosceles(static_cast<float>(c.distance), first.distance[i], second.distance[j]));
+    }
+    return marks;
+}
+
 void HeldConstraints::take(OpenMM::System& system) {
     if (!all_.empty())
         throw InputError("constraints that are held already", where,
                          "use it once at a time for each integrator");
     std::vector<Constraint> all = constraints_in(system);
     check(system, all);
-    std::vector<bool> const stays = in_triangles(system.getNumParticles(), all);
+    std::vector<bool> const stays = left_to_settle(system.getNumParticles(), all);
     remove_all(system);
     held_.clear();
     for (std::size_t i = 0; i < all.size(); ++i)

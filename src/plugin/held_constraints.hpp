@@ -14,9 +14,9 @@ namespace catena::plugin {
 class HeldConstraints {
   public:
     virtual ~HeldConstraints() = default;
-    /// Takes the constraints out of the System, except those of three particles among themselves
-    /// (rigid water). Throws InputError if they are held already, if a force of the System reads
-    /// constraints when a Context is created, and if OpenMM would refuse the constraints.
+    /// Takes the constraints out of the System, except those left to SETTLE. Throws InputError if
+    /// they are held already, if a force of the System reads constraints when a Context is created,
+    /// and if OpenMM would refuse the constraints.
     void take(OpenMM::System& system);
     /// Puts the constraints back, in their order. Throws InputError if the System has got others
     /// meanwhile; it then has both.
@@ -28,6 +28,10 @@ class HeldConstraints {
     std::vector<Constraint> all_, held_;
     int left_ = 0;
 };
+
+/// Marks the constraints that OpenMM solves by SETTLE (rigid water): three particles with
+/// constraints among themselves alone, two of them of one length.
+std::vector<bool> left_to_settle(int particles, std::vector<Constraint> const& constraints);
 
 /// The constraints of a System.
 std::vector<Constraint> constraints_in(OpenMM::System const& system);

@@ -6,6 +6,7 @@
 #include <openmm/serialization/SerializationProxy.h>
 
 #include <memory>
+#include <type_traits>
 
 #include "error.hpp"
 #include "plugin/reference_constraints.hpp"
@@ -66,15 +67,88 @@ class VerletProxy final : public OpenMM::SerializationProxy {
 
 }  // namespace
 
-void ChainLangevinIntegrator::initialize(OpenMM::ContextImpl& made) {
-    solve_constraints(made, held(), name);
-    LangevinMiddleIntegrator::initialize(made);
+template <class Base, class StepKernel>
+void ChainIntegrator<Base, StepKernel>::initialize(OpenMM::ContextImpl& made) {
+    std::string const platform = made.getPlatform().getName();
+    if (!is_device_platform(platform)) {
+        solve_constraints(made, held(), type());
+        return Base::initialize(made);
+    }
+    if (!held().empty())
+        throw InputError("`prepared` on the platform " + platform, "catena.openmm.prepared",
+                         "leave it out, or take the platform CPU");
+    if (this->owner != nullptr && &made.getOwner() != this->owner)
+        throw OpenMM::OpenMMException("This Integrator is already bound to a context");
+    kernel_ = made.getPlatform().createKernel(StepKernel::Name(), made);
+    kernel_.getAs<StepKernel>().initialize(made.getSystem(), *this);
+    device_ = make_device_constraints(made, type());
+    this->context = &made;
+    this->owner = &made.getOwner();
 }
 
-void ChainVerletIntegrator::initialize(OpenMM::ContextImpl& made) {
-    solve_constraints(made, held(), name);
-    VerletIntegrator::initialize(made);
+template <class Base, class StepKernel>
+void ChainIntegrator<Base, StepKernel>::cleanup() {
+    device_.reset();
+    kernel_ = OpenMM::Kernel();
+    Base::cleanup();
 }
+
+template <class Base, class StepKernel>
+void ChainIntegrator<Base, StepKernel>::stateChanged(OpenMM::State::DataType changed) {
+    if (device_) device_->note_change();
+    Base::stateChanged(changed);
+}
+
+template <class Base, class StepKernel>
+double ChainIntegrator<Base, StepKernel>::getConstraintTolerance() const {
+    // Distances from 0 to twice their values are within this tolerance.
+    return lets_pass_ ? 1.0 : Base::getConstraintTolerance();
+}
+
+template <class Base, class StepKernel>
+double ChainIntegrator<Base, StepKernel>::computeKineticEnergy() {
+    if (!is_device_platform(this->context->getPlatform().getName()))
+        return Base::computeKineticEnergy();
+    return kernel_.getAs<StepKernel>().computeKineticEnergy(*this->context, *this);
+}
+
+template <class Base, class StepKernel>
+void ChainIntegrator<Base, StepKernel>::step(int steps) {
+    if (this->context == nullptr || !is_device_platform(this->context->getPlatform().getName()))
+        return Base::step(steps);
+    for (int i = 0; i < steps; ++i) {
+        this->context->updateContextState();
+        this->context->calcForcesAndEnergy(true, false, this->getIntegrationForceGroups());
+        step_on_device();
+    }
+}
+
+template <class Base, class StepKernel>
+void ChainIntegrator<Base, StepKernel>::step_on_device() {
+    bool constexpr projects = std::is_same_v<Base, OpenMM::LangevinMiddleIntegrator>;
+    auto& stepper = kernel_.getAs<StepKernel>();
+    if (!device_) return stepper.execute(*this->context, *this);
+    double const step = this->getStepSize();
+    device_->before_step(step, projects);
+    lets_pass_ = true;
+    try {
+        stepper.execute(*this->context, *this);
+    } catch (...) {
+        lets_pass_ = false;
+        throw;
+    }
+    lets_pass_ = false;
+    try {
+        device_->after_step(step, this->getConstraintTolerance());
+    } catch (ComputationError const& error) {
+        throw OpenMM::OpenMMException(std::string(type()) + ": " + error.what());
+    }
+    this->context->computeVirtualSites();
+}
+
+template class ChainIntegrator<OpenMM::LangevinMiddleIntegrator,
+                               OpenMM::IntegrateLangevinMiddleStepKernel>;
+template class ChainIntegrator<OpenMM::VerletIntegrator, OpenMM::IntegrateVerletStepKernel>;
 
 HeldConstraints& held_by(OpenMM::Integrator& integrator) {
     auto* const held = dynamic_cast<HeldConstraints*>(&integrator);

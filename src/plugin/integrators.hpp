@@ -2,37 +2,63 @@
 #pragma once
 
 #include <OpenMM.h>
+#include <openmm/kernels.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "plugin/device_constraints.hpp"
 #include "plugin/held_constraints.hpp"
 
 namespace catena::plugin {
 
-/// OpenMM's LangevinMiddleIntegrator, with constraints solved by the divide-and-conquer algorithm.
-/// Whatever else applies constraints in its Context uses that solution too.
-class ChainLangevinIntegrator final : public OpenMM::LangevinMiddleIntegrator,
-                                      public HeldConstraints {
+/// An integrator of OpenMM (`Base`, whose steps are taken by `StepKernel`), with constraints solved
+/// by the divide-and-conquer algorithm. On the platforms Reference and CPU, whatever else applies
+/// constraints in its Context uses that solution too.
+template <class Base, class StepKernel>
+class ChainIntegrator : public Base, public HeldConstraints {
   public:
-    /// Name in XML files, and of the class in messages.
-    static constexpr char const* name = "ChainLangevinIntegrator";
-    /// Temperature in K, friction in 1/ps, step in ps. Throws what OpenMM throws.
-    using OpenMM::LangevinMiddleIntegrator::LangevinMiddleIntegrator;
+    /// Throws what OpenMM throws.
+    using Base::Base;
+    void step(int steps) override;
+    double getConstraintTolerance() const override;
 
   protected:
     /// Throws InputError if the System's constraints or the platform are not supported.
     void initialize(OpenMM::ContextImpl& made) override;
+    void cleanup() override;
+    void stateChanged(OpenMM::State::DataType changed) override;
+    double computeKineticEnergy() override;
+    /// Name in XML files and messages.
+    virtual char const* type() const = 0;
+
+  private:
+    void step_on_device();
+    /// On a GPU: OpenMM's kernel, and the constraints before and after it.
+    OpenMM::Kernel kernel_;
+    std::unique_ptr<DeviceConstraints> device_;
+    /// True while OpenMM's kernel takes a step on a GPU: its own constraints then do nothing.
+    bool lets_pass_ = false;
 };
 
-/// OpenMM's VerletIntegrator, with constraints solved as ChainLangevinIntegrator does.
-class ChainVerletIntegrator final : public OpenMM::VerletIntegrator, public HeldConstraints {
+/// OpenMM's LangevinMiddleIntegrator: temperature in K, friction in 1/ps, step in ps.
+class ChainLangevinIntegrator final
+    : public ChainIntegrator<OpenMM::LangevinMiddleIntegrator,
+                             OpenMM::IntegrateLangevinMiddleStepKernel> {
+  public:
+    static constexpr char const* name = "ChainLangevinIntegrator";
+    using ChainIntegrator::ChainIntegrator;
+    char const* type() const override { return name; }
+};
+
+/// OpenMM's VerletIntegrator: step in ps.
+class ChainVerletIntegrator final
+    : public ChainIntegrator<OpenMM::VerletIntegrator, OpenMM::IntegrateVerletStepKernel> {
   public:
     static constexpr char const* name = "ChainVerletIntegrator";
-    using OpenMM::VerletIntegrator::VerletIntegrator;
-
-  protected:
-    void initialize(OpenMM::ContextImpl& made) override;
+    using ChainIntegrator::ChainIntegrator;
+    char const* type() const override { return name; }
 };
 
 /// Returns the constraints that an integrator holds. Throws InputError if it is not one of these.

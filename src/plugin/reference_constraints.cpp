@@ -99,7 +99,7 @@ void solve_constraints(OpenMM::ContextImpl& context, std::vector<Constraint> con
     std::string const platform = context.getPlatform().getName();
     if (platform != "Reference" && platform != "CPU")
         throw InputError(user + " on the platform " + platform, "Context",
-                         "name the platform CPU or Reference, as in Platform.getPlatform('CPU')");
+                         "name the platform CPU, as in Platform.getPlatform('CPU')");
     auto const* data =
         reinterpret_cast<OpenMM::ReferencePlatform::PlatformData*>(context.getPlatformData());
     OpenMM::ReferenceConstraints& constraints = *data->constraints;
