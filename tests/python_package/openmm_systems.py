@@ -79,8 +79,8 @@ def tell_angles(system, x):
     return system
 
 
-def context(system, integrator, x, platform="Reference", threads=2, temperature=300):
-    properties = {"Threads": str(threads)} if platform == "CPU" else {}
+def context(system, integrator, x, platform="Reference", threads=2, temperature=300, precision="mixed"):
+    properties = {"CPU": {"Threads": str(threads)}, "Reference": {}}.get(platform, {"Precision": precision})
     made = openmm.Context(system, integrator, openmm.Platform.getPlatform(platform), properties)
     made.setPositions(x)
     made.setVelocitiesToTemperature(temperature, 3)

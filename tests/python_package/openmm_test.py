@@ -468,20 +468,139 @@ class Refused(Case):
         system.setConstraintParameters(0, 0, 1, 0.0)
         self.refuse(system, "distance 0 nm .*positive")
 
-    def test_other_platforms(self):
-        names = {openmm.Platform.getPlatform(k).getName() for k in range(openmm.Platform.getNumPlatforms())}
-        others = names - {"Reference", "CPU"}
-        if not others:
-            self.skipTest("no other platform here")
-        for name in others:
-            with self.assertRaisesRegex(openmm.OpenMMException, name):
-                openmm.Context(make_system([-1, 0]), ChainVerletIntegrator(STEP), openmm.Platform.getPlatform(name))
-
     def test_numbers_that_openmm_refuses(self):
         with self.assertRaisesRegex(openmm.OpenMMException, "Temperature cannot be negative"):
             ChainLangevinIntegrator(-1, 1, 0.01)
         with self.assertRaises(TypeError):
             ChainLangevinIntegrator(300 * unit.nanometer, 1, 0.01)
+
+
+class OnDevices(Case):
+    """The platforms CUDA, HIP and OpenCL, as far as there are some here."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        names = [openmm.Platform.getPlatform(k).getName() for k in range(openmm.Platform.getNumPlatforms())]
+        cls.platforms = [name for name in names if name not in ("Reference", "CPU")]
+        if not cls.platforms:
+            raise unittest.SkipTest("no GPU platform here")
+
+    def cases(self):
+        for platform in self.platforms:
+            for precision in ("mixed", "double", "single"):
+                yield platform, precision, {"mixed": 1e-6, "double": 1e-9, "single": 1e-4}[precision]
+
+    def several_chains(self, *counts):
+        parents = []
+        for count in counts:
+            parents += [-1] + list(range(len(parents), len(parents) + count - 1))
+        x = walk(parents)
+        x[:, 1] -= np.repeat([2.0 * sum(counts[:i]) for i in range(len(counts))], counts)  # Large coordinates round more.
+        return pull(make_system(parents)), x
+
+    def test_steps_equal_those_of_the_reference_platform(self):
+        v = 0.1 * np.random.default_rng(1).normal(size=(1700, 3))
+        for counts in ((2, 1, 37), (1500, 1, 3, 196)):
+            system, x = self.several_chains(*counts)
+            for make in (lambda: langevin(friction=0.0), lambda: ChainVerletIntegrator(STEP)):
+                ends = {}
+                for platform, precision, tolerance in [("Reference", "double", 1e-12), *self.cases()]:
+                    integrator = make()
+                    here = context(system, integrator, x, platform, precision=precision)
+                    here.setVelocities(v[: len(x)])
+                    integrator.step(10)
+                    ends[precision if platform != "Reference" else "reference"] = positions(here)
+                    self.assertLess(constraint_error(system, positions(here)), 1.0001 * tolerance, (platform, precision))
+                    if platform == "Reference":
+                        kinetic = energies(here)[0]
+                    else:
+                        self.assertLess(np.abs(positions(here) - ends["reference"]).max(), {"single": 1e-2, "mixed": 1e-5, "double": 1e-8}[precision])
+                        self.assertLess(abs(energies(here)[0] / kinetic - 1), 1e-2 if precision == "single" else 1e-4)
+                    del here
+
+    def test_temperature(self):
+        for platform, precision, _ in self.cases():
+            if precision != "mixed":
+                continue
+            system, x = self.several_chains(*[6] * 60)
+            integrator = langevin(friction=1.0)
+            here = context(system, integrator, x, platform)
+            integrator.step(200)
+            rows = []
+            for _ in range(200):
+                integrator.step(10)
+                rows.append(energies(here)[0])
+            mean, error = mean_and_error(rows)
+            self.assertLess(abs(mean - 0.5 * 60 * 13 * BOLTZMANN * 300), 3 * error)
+            del here
+
+    def test_sorted_particles_in_a_box_and_rigid_water(self):
+        parents = chain_parents(30)
+        for platform, precision, tolerance in self.cases():
+            system, x = make_system(parents), walk(parents)
+            for k in range(20):
+                first = system.getNumParticles()
+                for mass in (16, 1, 1):
+                    system.addParticle(mass)
+                for a, b, d in ((0, 1, 0.1), (0, 2, 0.1), (1, 2, 0.15)):
+                    system.addConstraint(first + a, first + b, d)
+                place = np.array([4.0 + k % 5, 1 + k // 5, 5])
+                x = np.vstack([x, place, place + [0.1, 0, 0], place + [0.1 * (1 - 1.125), 0.1 * np.sqrt(1 - 0.125**2), 0]])
+            system.setDefaultPeriodicBoxVectors([6, 0, 0], [0, 6, 0], [0, 0, 6])
+            force = openmm.NonbondedForce()
+            force.setNonbondedMethod(openmm.NonbondedForce.CutoffPeriodic)
+            for k in range(system.getNumParticles()):
+                force.addParticle(0, 0.1, 0.1)
+            force.createExceptionsFromBonds([(a, b) for a, b, _ in constraints(system)], 0, 0)
+            system.addForce(force)
+            integrator = langevin()
+            integrator.setStepSize(0.002)
+            here = context(system, integrator, x, platform, precision=precision)
+            for _ in range(6):
+                integrator.step(100)
+                self.assertLess(constraint_error(system, positions(here)), 10 * max(tolerance, 1e-6), (platform, precision))
+            del here
+
+    def test_checkpoints_compound_integrators_and_a_far_start(self):
+        for platform, precision, tolerance in self.cases():
+            system, x = self.several_chains(12, 5)
+            compound = openmm.CompoundIntegrator()
+            compound.addIntegrator(langevin())
+            compound.addIntegrator(ChainVerletIntegrator(STEP))
+            here = context(system, compound, x, platform, precision=precision)
+            here.setPositions(x * (1 + 1e-2 * np.sin(np.arange(len(x))))[:, None])
+            for index in (0, 1):
+                compound.setCurrentIntegrator(index)
+                compound.step(3)
+                self.assertLess(constraint_error(system, positions(here)), tolerance)
+            kept = here.createCheckpoint()
+            compound.step(5)
+            expected = positions(here)
+            here.loadCheckpoint(kept)
+            compound.step(5)
+            self.assertLess(np.abs(positions(here) - expected).max(), 10 * tolerance)
+            del here
+
+    def test_what_is_refused(self):
+        triangle, _ = ring(3)
+        for number, length in enumerate((0.3, 0.4, 0.5)):
+            triangle.setConstraintParameters(number, *triangle.getConstraintParameters(number)[:2], length)
+        for platform in self.platforms:
+            there = openmm.Platform.getPlatform(platform)
+            for system, shape in ((ring(6)[0], "ring"), (make_system(tree_parents(9)), "tree"), (triangle, "ring")):
+                with self.assertRaisesRegex(openmm.OpenMMException, f"form a {shape} on the platform {platform} .*take the platform CPU"):
+                    openmm.Context(system, ChainVerletIntegrator(STEP), there)
+            system, x = self.several_chains(4)
+            integrator = ChainVerletIntegrator(STEP)
+            with self.assertRaisesRegex(openmm.OpenMMException, f"`prepared` on the platform {platform}"):
+                with prepared(system, integrator):
+                    openmm.Context(system, integrator, there)
+            here = context(system, integrator, x, platform)
+            here.setVelocities(np.array([[0, 0, 0], [0, 1e3, 0], [0, -1e3, 0], [1e3, 0, 0]]))
+            with self.assertRaisesRegex(openmm.OpenMMException, "ChainVerletIntegrator: (constraints stay open .*smaller step|positions are no longer)"):
+                integrator.step(2)
+            del here
 
 
 class Prepared(Case):
