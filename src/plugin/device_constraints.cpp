@@ -12,8 +12,8 @@
 #include <cmath>
 
 #include "error.hpp"
+#include "plugin/context_constraints.hpp"
 #include "plugin/device_kernels.hpp"
-#include "plugin/held_constraints.hpp"
 
 namespace catena::plugin {
 namespace {
@@ -44,8 +44,11 @@ class Reordered final : public OpenMM::ComputeContext::ReorderListener {
 
 class OnDevice final : public DeviceConstraints {
   public:
-    OnDevice(OpenMM::ComputeContext& gpu, ConstraintChains const& chains)
+    /// `on_host`: null if OpenMM knows the constraints.
+    OnDevice(OpenMM::ComputeContext& gpu, ConstraintChains const& chains,
+             std::shared_ptr<ContextConstraints> on_host)
         : gpu_(gpu),
+          on_host_(std::move(on_host)),
           is_double_(gpu.getUseDoublePrecision() || gpu.getUseMixedPrecision()),
           beads_(static_cast<int>(chains.particle.size())),
           blocks_((beads_ + run * width - 1) / (run * width)),
@@ -83,6 +86,10 @@ class OnDevice final : public DeviceConstraints {
         find_places();
         for (int s = 0; s < sweeps_; ++s) sweep(false, step, s);
         if (++unseen_ >= seen_) look(step, tolerance);
+    }
+    std::optional<double> shifted_kinetic_energy(double shift) override {
+        if (!on_host_ || shift == 0) return std::nullopt;
+        return on_host_->shifted_kinetic_energy(shift);
     }
     void note_change() override {
         sweeps_ = std::max(sweeps_, first_sweeps);
@@ -213,6 +220,7 @@ class OnDevice final : public DeviceConstraints {
     }
 
     OpenMM::ComputeContext& gpu_;
+    std::shared_ptr<ContextConstraints> on_host_;
     bool is_double_;
     int beads_, blocks_;
     std::vector<std::size_t> particle_;
@@ -244,22 +252,16 @@ bool is_device_platform(std::string const& name) {
 }
 
 std::unique_ptr<DeviceConstraints> make_device_constraints(OpenMM::ContextImpl& context,
-                                                           std::string const& user) {
+                                                           bool unknown, std::string const& user) {
     OpenMM::System const& system = context.getSystem();
-    std::vector<double> mass;
-    for (int k = 0; k < system.getNumParticles(); ++k) mass.push_back(system.getParticleMass(k));
-    std::vector<Constraint> open = constraints_in(system);
-    std::vector<bool> const settled = left_to_settle(system.getNumParticles(), open);
-    std::size_t i = 0;
-    std::erase_if(open, [&](Constraint const& c) {
-        return settled[i++] ||
-               (mass[std::size_t(c.first)] == 0 && mass[std::size_t(c.second)] == 0);
-    });
+    std::vector<Constraint> const open = constraints_to_solve(system);
     if (open.empty()) return nullptr;
-    ConstraintChains const chains = constraint_chains(mass, open, user);
+    ConstraintChains const chains = constraint_chains(masses_of(system), open, user);
     refuse_rings_and_trees(chains, context.getPlatform().getName(), user);
     auto const* data = static_cast<PlatformData*>(context.getPlatformData());
-    return std::make_unique<OnDevice>(*data->contexts.at(0), chains);
+    auto const on_host = unknown ? std::make_shared<ContextConstraints>(context, user) : nullptr;
+    if (on_host) apply_in_context(context, on_host);
+    return std::make_unique<OnDevice>(*data->contexts.at(0), chains, on_host);
 }
 
 }  // namespace catena::plugin

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ class DeviceConstraints {
     /// the mean velocity of that motion. Throws ComputationError if constraints stay open; the
     /// error is read every few steps only.
     virtual void after_step(double step, double tolerance) = 0;
+    /// Kinetic energy of velocities that lead the present ones by `shift` (ps) and have been
+    /// projected, kJ/mol. Forces must be up to date. Absent if OpenMM's own function is right.
+    virtual std::optional<double> shifted_kinetic_energy(double shift) = 0;
     /// Takes note that the user has changed positions or velocities.
     virtual void note_change() = 0;
 };
@@ -34,9 +38,11 @@ class DeviceConstraints {
 bool is_device_platform(std::string const& name);
 
 /// Returns the constraints of a Context, or null if it has none to solve. Its platform must be a
-/// device platform. `user` names the integrator for messages. Throws InputError for constraints
-/// that form rings or trees, and where constraint_chains() does.
+/// device platform. `unknown`: OpenMM was not told of the constraints when the Context was created.
+/// What else applies them in the Context then gets a solver on the host. `user` names the
+/// integrator for messages. Throws InputError for constraints that form rings or trees, and where
+/// constraint_chains() does.
 std::unique_ptr<DeviceConstraints> make_device_constraints(OpenMM::ContextImpl& context,
-                                                           std::string const& user);
+                                                           bool unknown, std::string const& user);
 
 }  // namespace catena::plugin

@@ -115,7 +115,8 @@ void HeldConstraints::take(OpenMM::System& system) {
     all_ = std::move(all);
 }
 
-void HeldConstraints::put_back(OpenMM::System& system) {
+bool HeldConstraints::put_back(OpenMM::System& system) {
+    if (all_.empty()) return false;
     bool const changed = system.getNumConstraints() != left_;
     if (changed) {
         for (Constraint const& c : held_) add_to(system, c);
@@ -128,6 +129,7 @@ void HeldConstraints::put_back(OpenMM::System& system) {
     if (changed)
         throw InputError("a System whose constraints have changed", where,
                          "change them before or after it");
+    return true;
 }
 
 }  // namespace catena::plugin

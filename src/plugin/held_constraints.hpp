@@ -18,13 +18,13 @@ class HeldConstraints {
     /// they are held already, if a force of the System reads constraints when a Context is created,
     /// and if OpenMM would refuse the constraints.
     void take(OpenMM::System& system);
-    /// Puts the constraints back, in their order. Throws InputError if the System has got others
-    /// meanwhile; it then has both.
-    void put_back(OpenMM::System& system);
-    std::vector<Constraint> const& held() const { return held_; }
+    /// Puts the constraints back, in their order. Returns false if they are back already. Throws
+    /// InputError if the System has got others meanwhile; it then has both.
+    bool put_back(OpenMM::System& system);
 
   private:
-    /// all_: all constraints of the System; left_: how many stayed there.
+    /// all_: all constraints of the System, while they are held; held_: those that it lacks; left_:
+    /// number of those that it has.
     std::vector<Constraint> all_, held_;
     int left_ = 0;
 };

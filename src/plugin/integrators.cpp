@@ -10,6 +10,7 @@
 
 #include "error.hpp"
 #include "plugin/reference_constraints.hpp"
+#include "plugin/vectors.hpp"
 
 namespace catena::plugin {
 namespace {
@@ -70,18 +71,17 @@ class VerletProxy final : public OpenMM::SerializationProxy {
 template <class Base, class StepKernel>
 void ChainIntegrator<Base, StepKernel>::initialize(OpenMM::ContextImpl& made) {
     std::string const platform = made.getPlatform().getName();
+    // From here on OpenMM does not prepare constraints, but finds molecules by them.
+    bool const unknown = put_back(const_cast<OpenMM::System&>(made.getSystem()));
     if (!is_device_platform(platform)) {
-        solve_constraints(made, held(), type());
+        solve_constraints(made, type());
         return Base::initialize(made);
     }
-    if (!held().empty())
-        throw InputError("`prepared` on the platform " + platform, "catena.openmm.prepared",
-                         "leave it out, or take the platform CPU");
     if (this->owner != nullptr && &made.getOwner() != this->owner)
         throw OpenMM::OpenMMException("This Integrator is already bound to a context");
     kernel_ = made.getPlatform().createKernel(StepKernel::Name(), made);
     kernel_.getAs<StepKernel>().initialize(made.getSystem(), *this);
-    device_ = make_device_constraints(made, type());
+    device_ = make_device_constraints(made, unknown, type());
     this->context = &made;
     this->owner = &made.getOwner();
 }
@@ -109,7 +109,10 @@ template <class Base, class StepKernel>
 double ChainIntegrator<Base, StepKernel>::computeKineticEnergy() {
     if (!is_device_platform(this->context->getPlatform().getName()))
         return Base::computeKineticEnergy();
-    return kernel_.getAs<StepKernel>().computeKineticEnergy(*this->context, *this);
+    double const shift = takes_noise ? 0 : this->getStepSize() / 2;
+    std::optional<double> const own =
+        device_ ? device_->shifted_kinetic_energy(shift) : std::nullopt;
+    return own ? *own : kernel_.getAs<StepKernel>().computeKineticEnergy(*this->context, *this);
 }
 
 template <class Base, class StepKernel>
@@ -125,11 +128,10 @@ void ChainIntegrator<Base, StepKernel>::step(int steps) {
 
 template <class Base, class StepKernel>
 void ChainIntegrator<Base, StepKernel>::step_on_device() {
-    bool constexpr projects = std::is_same_v<Base, OpenMM::LangevinMiddleIntegrator>;
     auto& stepper = kernel_.getAs<StepKernel>();
     if (!device_) return stepper.execute(*this->context, *this);
     double const step = this->getStepSize();
-    device_->before_step(step, projects);
+    device_->before_step(step, takes_noise);
     lets_pass_ = true;
     try {
         stepper.execute(*this->context, *this);
@@ -138,11 +140,7 @@ void ChainIntegrator<Base, StepKernel>::step_on_device() {
         throw;
     }
     lets_pass_ = false;
-    try {
-        device_->after_step(step, this->getConstraintTolerance());
-    } catch (ComputationError const& error) {
-        throw OpenMM::OpenMMException(std::string(type()) + ": " + error.what());
-    }
+    as_openmm_error(type(), [&] { device_->after_step(step, this->getConstraintTolerance()); });
     this->context->computeVirtualSites();
 }
 

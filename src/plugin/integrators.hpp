@@ -6,7 +6,7 @@
 
 #include <memory>
 #include <string>
-#include <vector>
+#include <type_traits>
 
 #include "plugin/device_constraints.hpp"
 #include "plugin/held_constraints.hpp"
@@ -34,6 +34,8 @@ class ChainIntegrator : public Base, public HeldConstraints {
     virtual char const* type() const = 0;
 
   private:
+    /// True for Langevin dynamics, which projects velocities and has velocities at whole steps.
+    static constexpr bool takes_noise = std::is_same_v<Base, OpenMM::LangevinMiddleIntegrator>;
     void step_on_device();
     /// On a GPU: OpenMM's kernel, and the constraints before and after it.
     OpenMM::Kernel kernel_;

@@ -50,7 +50,10 @@ NB_MODULE(_integrators, module) {
     module.def(
         "put_constraints_back",
         [](std::uintptr_t system, std::uintptr_t integrator) {
-            translated([&] { held_at(integrator).put_back(system_at(system)); });
+            bool held = false;
+            translated([&] { held = held_at(integrator).put_back(system_at(system)); });
+            return held;
         },
-        "Puts back what take_constraints() has taken.");
+        "Puts back what take_constraints() has taken. Returns False if the integrator has done "
+        "so.");
 }

@@ -10,17 +10,13 @@
 #include <set>
 
 #include "error.hpp"
+#include "plugin/context_constraints.hpp"
 #include "plugin/held_constraints.hpp"
 #include "plugin/link_solver.hpp"
+#include "plugin/vectors.hpp"
 
 namespace catena::plugin {
 namespace {
-
-static_assert(sizeof(OpenMM::Vec3) == sizeof(Vec3));
-
-std::span<Vec3> as_span(std::vector<OpenMM::Vec3>& vectors) {
-    return {reinterpret_cast<Vec3*>(vectors.data()), vectors.size()};
-}
 
 /// Catena's solver behind OpenMM's interface.
 class ChainConstraints final : public OpenMM::ReferenceConstraintAlgorithm {
@@ -30,7 +26,7 @@ class ChainConstraints final : public OpenMM::ReferenceConstraintAlgorithm {
 
     void apply(std::vector<OpenMM::Vec3>& from, std::vector<OpenMM::Vec3>& to,
                std::vector<double>& /*inverse_masses*/, double tolerance) override {
-        named([&] {
+        as_openmm_error(user_, [&] {
             if (&from == &to)
                 solver_->restore(as_span(to), tolerance);
             else
@@ -40,20 +36,10 @@ class ChainConstraints final : public OpenMM::ReferenceConstraintAlgorithm {
     void applyToVelocities(std::vector<OpenMM::Vec3>& positions,
                            std::vector<OpenMM::Vec3>& velocities,
                            std::vector<double>& /*inverse_masses*/, double /*tolerance*/) override {
-        named([&] { solver_->project(as_span(positions), as_span(velocities)); });
+        as_openmm_error(user_, [&] { solver_->project(as_span(positions), as_span(velocities)); });
     }
 
   private:
-    /// Runs `action`; its errors become OpenMM's, with the integrator's name.
-    template <class Action>
-    void named(Action const& action) const {
-        try {
-            action();
-        } catch (ComputationError const& error) {
-            throw OpenMM::OpenMMException(user_ + ": " + error.what());
-        }
-    }
-
     std::unique_ptr<LinkSolver> solver_;
     std::string user_;
 };
@@ -74,10 +60,8 @@ std::set<int> settled(OpenMM::ReferenceConstraints const& constraints) {
 /// Constraints that OpenMM would solve by CCMA. Like OpenMM, it skips those between two particles
 /// without mass.
 std::vector<Constraint> open_constraints(OpenMM::System const& system,
-                                         std::vector<Constraint> found,
                                          std::set<int> const& settled) {
-    std::vector<Constraint> const present = constraints_in(system);
-    found.insert(found.end(), present.begin(), present.end());
+    std::vector<Constraint> found = constraints_in(system);
     std::erase_if(found, [&](Constraint const& c) {
         return settled.contains(c.first) ||
                (system.getParticleMass(c.first) == 0 && system.getParticleMass(c.second) == 0);
@@ -94,8 +78,7 @@ int threads_of(OpenMM::ContextImpl& context) {
 
 }  // namespace
 
-void solve_constraints(OpenMM::ContextImpl& context, std::vector<Constraint> const& held,
-                       std::string const& user) {
+void solve_constraints(OpenMM::ContextImpl& context, std::string const& user) {
     std::string const platform = context.getPlatform().getName();
     if (platform != "Reference" && platform != "CPU")
         throw InputError(user + " on the platform " + platform, "Context",
@@ -105,12 +88,10 @@ void solve_constraints(OpenMM::ContextImpl& context, std::vector<Constraint> con
     OpenMM::ReferenceConstraints& constraints = *data->constraints;
     if (dynamic_cast<ChainConstraints*>(constraints.ccma) != nullptr) return;
     OpenMM::System const& system = context.getSystem();
-    std::vector<Constraint> const open = open_constraints(system, held, settled(constraints));
+    std::vector<Constraint> const open = open_constraints(system, settled(constraints));
     if (open.empty()) return;
-    std::vector<double> mass;
-    for (int k = 0; k < system.getNumParticles(); ++k) mass.push_back(system.getParticleMass(k));
     auto solver = std::make_unique<ChainConstraints>(
-        make_link_solver(mass, open, threads_of(context), user), user);
+        make_link_solver(masses_of(system), open, threads_of(context), user), user);
     delete constraints.ccma;
     constraints.ccma = solver.release();
 }

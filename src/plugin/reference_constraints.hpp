@@ -2,9 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
-
-#include "plugin/constraint_chains.hpp"
 
 namespace OpenMM {
 class ContextImpl;
@@ -17,7 +14,6 @@ namespace catena::plugin {
 /// Reference or CPU. `held`: constraints that the System lacks at present. `user` names the
 /// integrator for messages. The second call in a Context does nothing. Throws InputError where
 /// constraint_chains() does and on another platform.
-void solve_constraints(OpenMM::ContextImpl& context, std::vector<Constraint> const& held,
-                       std::string const& user);
+void solve_constraints(OpenMM::ContextImpl& context, std::string const& user);
 
 }  // namespace catena::plugin

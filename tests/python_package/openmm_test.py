@@ -582,6 +582,33 @@ class OnDevices(Case):
             self.assertLess(np.abs(positions(here) - expected).max(), 10 * tolerance)
             del here
 
+    def test_prepared_contexts(self):
+        for platform, precision, tolerance in self.cases():
+            for make in (lambda: langevin(friction=0.0), lambda: ChainVerletIntegrator(STEP)):
+                ends = []
+                for with_it in (False, True):
+                    system, x = self.several_chains(12, 5, 1)
+                    integrator = make()
+                    if with_it:
+                        with prepared(system, integrator):
+                            here = context(system, integrator, x, platform, precision=precision)
+                    else:
+                        here = context(system, integrator, x, platform, precision=precision)
+                    self.assertEqual(len(here.getMolecules()), 3)
+                    v = velocities(here)
+                    self.assertLess(velocity_error(system, x, v), tolerance)
+                    integrator.step(10)
+                    ends.append((positions(here), velocities(here), v, *energies(here)))
+                    self.assertLess(constraint_error(system, ends[-1][0]), tolerance)
+                    here.setPositions(x * (1 + 1e-2 * np.sin(np.arange(len(x))))[:, None])
+                    here.applyConstraints(1e-6)
+                    self.assertLess(constraint_error(system, positions(here)), tolerance if with_it else 1e-4)  # OpenMM's own
+                    openmm.LocalEnergyMinimizer.minimize(here, 10.0)
+                    self.assertLess(constraint_error(system, positions(here)), max(1e-4, tolerance))
+                    del here
+                for mine, theirs in zip(*ends):
+                    self.assertLess(np.max(np.abs(np.subtract(mine, theirs)) / np.maximum(1, np.abs(theirs))), 100 * tolerance)
+
     def test_what_is_refused(self):
         triangle, _ = ring(3)
         for number, length in enumerate((0.3, 0.4, 0.5)):
@@ -593,9 +620,6 @@ class OnDevices(Case):
                     openmm.Context(system, ChainVerletIntegrator(STEP), there)
             system, x = self.several_chains(4)
             integrator = ChainVerletIntegrator(STEP)
-            with self.assertRaisesRegex(openmm.OpenMMException, f"`prepared` on the platform {platform}"):
-                with prepared(system, integrator):
-                    openmm.Context(system, integrator, there)
             here = context(system, integrator, x, platform)
             here.setVelocities(np.array([[0, 0, 0], [0, 1e3, 0], [0, -1e3, 0], [1e3, 0, 0]]))
             with self.assertRaisesRegex(openmm.OpenMMException, "ChainVerletIntegrator: (constraints stay open .*smaller step|positions are no longer)"):
@@ -618,7 +642,7 @@ class Prepared(Case):
             integrator = ChainVerletIntegrator(0.002)
             if with_it:
                 with prepared(system, integrator):
-                    self.assertEqual(system.getNumConstraints(), 6)  # the triangles
+                    self.assertEqual(system.getNumConstraints(), 3)  # the water
                     here = context(system, integrator, x)
             else:
                 here = context(system, integrator, x)
@@ -660,6 +684,10 @@ class Prepared(Case):
             with self.assertRaisesRegex(catena.InputError, "held already"):
                 with prepared(system, integrator):
                     pass
+            context(system, integrator, walk(chain_parents(5)))
+        with self.assertRaisesRegex(catena.InputError, "no Context was created"):
+            with prepared(system, integrator):
+                openmm.Context(system, openmm.VerletIntegrator(STEP), openmm.Platform.getPlatform("Reference"))
         with self.assertRaisesRegex(catena.InputError, "constraints have changed"):
             with prepared(system, integrator):
                 system.addConstraint(0, 4, 1.0)

@@ -77,11 +77,18 @@ def prepared(system: openmm.System, integrator: openmm.Integrator) -> Iterator[N
     """Creates Contexts with many constraints quickly, within a ``with`` statement.
 
     OpenMM prepares its CCMA for every Context, which takes a minute with 100,000 constraints and hours with a million.
-    Within the statement the System lacks its constraints, so OpenMM prepares nothing, and the integrator knows them.
-    Only create or reinitialise the Context or Simulation within it.
+    Within the statement the System lacks its constraints until the integrator gets a Context; OpenMM prepares nothing.
+    Only create or reinitialise the Context or Simulation within it. Raises InputError if none was made.
     """
-    _integrators.take_constraints(int(system.this), int(integrator.this))
+    address = int(system.this), int(integrator.this)
+    _integrators.take_constraints(*address)
     try:
         yield
-    finally:
-        _integrators.put_constraints_back(int(system.this), int(integrator.this))
+    except BaseException:
+        _integrators.put_constraints_back(*address)
+        raise
+    if _integrators.put_constraints_back(*address):
+        raise InputError(
+            "no Context was created with the integrator (catena.openmm.prepared): create it within the `with` "
+            "statement; other Contexts that were created there have no constraints"
+        )
