@@ -159,6 +159,11 @@ if(catena_wanted)
 endif()
 catena_settle(OPENMM IN "${OpenMM_VERSION}, ${OpenMM_LIBRARY}" DEBIAN "libopenmm-dev, or PyPI's openmm, or -DOPENMM_DIR=..."
               LEFT_OUT "no forces of OpenMM" BECAUSE "${OPENMM_MISSING_BECAUSE}")
+# Integrators for plain OpenMM scripts need headers of its platforms. PyPI's OpenMM has them, Debian's has not.
+set(CATENA_HAVE_OPENMM_PLUGIN OFF)
+if(CATENA_HAVE_OPENMM AND EXISTS "${OpenMM_INCLUDE_DIR}/openmm/reference/ReferenceConstraints.h")
+    set(CATENA_HAVE_OPENMM_PLUGIN ON)
+endif()
 
 catena_switch(OPENMP "Several threads a rank")
 if(catena_wanted)
