@@ -347,6 +347,15 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             });
     }
 
+    /// Calls action(link) for every cross-link. Public because of nvcc.
+    template <class Action>
+    void over_crosslinks(Action const& action) const {
+        space_.for_each(std::ssize(group_.crosslinks),
+                        [action, first = group_.first_crosslink()] CATENA_LAMBDA(std::int64_t i) {
+                            action(first + i);
+                        });
+    }
+
   private:
     static constexpr std::int64_t never = -1;
     /// Runs `action`. On the host it keeps a pivot failure until the next check(); on a GPU the
@@ -375,14 +384,6 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         for (std::int64_t i = 0; i < std::ssize(group_.crosslinks); ++i)
             if (!(c.error(group_.first_crosslink() + i) <= tolerance)) return false;
         return true;
-    }
-    /// Calls action(link) for every cross-link.
-    template <class Action>
-    void over_crosslinks(Action const& action) const {
-        space_.for_each(std::ssize(group_.crosslinks),
-                        [action, first = group_.first_crosslink()] CATENA_LAMBDA(std::int64_t i) {
-                            action(first + i);
-                        });
     }
     /// The parts of a step, executed loop by loop.
     BeadStep<Way, Fields> parts() { return {chains(), {*this}}; }

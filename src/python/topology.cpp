@@ -30,7 +30,7 @@ class SceneSites {
     Topology const& topology() const { return sites_.topology(); }
     /// Returns the positions of all sites [site][component] from those of the bodies.
     nb::object positions(Numbers<2> const& position, Numbers<2> const& orientation) const {
-        ChainSystem::Bodies bodies;
+        SceneBodies bodies;
         std::size_t const count = position.shape(0);
         if (orientation.shape(0) != count || position.shape(1) != 3 || orientation.shape(1) != 4)
             throw Error("the arrays have the wrong shape (positions): give those of a state",
