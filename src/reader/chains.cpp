@@ -232,8 +232,7 @@ void cross_link(ChainSpec& chain, ChainRequest const& request, Node const& sourc
                  fmt::format("the cross-link of beads {} and {} has no length, and the start is "
                              "generated",
                              link.inboard + 1, link.outboard + 1),
-                 fmt::format("give one, as in [{}, {}, {:.2g}]", link.inboard + 1,
-                             link.outboard + 1, chain.beads.length.back()));
+                 fmt::format("add it, [{}, {}, LENGTH]", link.inboard + 1, link.outboard + 1));
     }
     note_residues(chain.crosslinks, request);
     fit_crosslinks(chain, {request.scene, *node, generated, quiet});

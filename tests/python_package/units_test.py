@@ -34,7 +34,7 @@ class Quantities(Case):
         np.testing.assert_allclose(catena.solve(changed).accelerations, catena.solve(PENDULUM).accelerations, rtol=1e-12)
         with self.assertRaisesRegex(catena.InputError, r"does not have the unit of the key, time \(dynamics.step\)"):
             model.set("dynamics.step", make(10, "kelvin"))
-        with self.assertRaisesRegex(catena.InputError, r"takes no unit \(dynamics.steps\)"):
+        with self.assertRaisesRegex(catena.InputError, r"takes no unit, or is unknown \(dynamics.steps\)"):
             model.set("dynamics.steps", make(10, "femtosecond"))
         with self.assertRaisesRegex(catena.InputError, r"depends on other keys, .* \(chains\[0\].bodies\[1\].joint.stiffness\): give a plain number"):
             model.set("chains[0].bodies[1].joint.stiffness", make(10, "kilojoule"))

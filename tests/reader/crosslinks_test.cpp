@@ -134,10 +134,10 @@ TEST(CrossLinksOfAScene, OfGeneratedStartsNeedALength) {
         std::string const chain = "chains: [{" + start + ", crosslinks: ";
         std::string const message = refusal_of(chain + "[[1, 5]]}]");
         EXPECT_NE(message.find("the cross-link of beads 1 and 5 has no length, and the start is "
-                               "generated (chains[0].crosslinks"),
+                               "generated (s.yaml: chains[0].crosslinks"),
                   std::string::npos)
             << message;
-        EXPECT_NE(message.find("give one, as in [1, 5, 0.38]"), std::string::npos) << message;
+        EXPECT_NE(message.find("add it, [1, 5, LENGTH]"), std::string::npos) << message;
         EXPECT_EQ(parse_scene(chain + "[[1, 5, 0.55]]}]", "s.yaml").chains.at(0).crosslinks,
                   (std::vector<CrossLink>{{0, 4, 0.55}}));
     }

@@ -54,9 +54,9 @@ TEST_F(Structures, cross_links_count_beads_and_name_residues_of_other_numbers) {
         return std::string();
     };
     EXPECT_EQ(noted(1), "");
-    EXPECT_EQ(noted(11),
-              "`crosslinks` count the beads of chain `chain-1` from 1, not by the residue numbers "
-              "of `a.pdb`: they join CYS 11 to CYS 15");
+    EXPECT_NE(noted(11).find("the beads of chain `chain-1` from 1, not by the residue numbers"),
+              std::string::npos);
+    EXPECT_TRUE(noted(11).ends_with("a.pdb`: they join CYS 11 to CYS 15"));
     EXPECT_NE(refusal_with("crosslinks: [[11, 15]]").find("a cross-link ends at bead 11 of 5"),
               std::string::npos);
 }

@@ -39,7 +39,7 @@ def number_of(quantity: Any, key: str, si: bool) -> Any:
         if number is not None:
             return number
     units = " or ".join(_shown(powers) for powers in known)
-    raise InputError(f"{quantity} does not have the unit of the key, {' or '.join(wanted)} ({key}): give a quantity that {units} can express, or a plain number")
+    raise InputError(f"{quantity} does not have the unit of the key, {' or '.join(wanted)} ({key}): give a quantity in {units}, or a plain number")
 
 
 def _concentration(quantity: Any, key: str) -> str:

@@ -127,10 +127,7 @@ class Model:
             else:
                 read = _core.Model.from_file(os.fspath(self._scene))
             for key, value in self._changes:
-                try:
-                    read.set(key, value)
-                except InputError as error:
-                    raise InputError(str(error).replace("(--set ", "(Model.set: ")) from None
+                read.set(key, value)
             self._read = read
         return self._read
 
