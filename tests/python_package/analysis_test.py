@@ -81,6 +81,45 @@ def chains_of(model, copies=3):
     return model.set("output", {"every": 10, "observables": ["temperature"]})
 
 
+class SeveralChains(Case):
+    def test_sizes_of_several_chains_are_not_taken_for_one(self):
+        simulation = catena.Simulation(chains_of(catena.Model()))
+        record = catena.Record(simulation, every=2)
+        for function in (catena.analysis.analyse, catena.analysis.mean, catena.plot.radius_of_gyration):
+            with self.assertRaisesRegex(catena.InputError, "the record has no frames|the values are of the type Record"):
+                function(record)
+        simulation.step(10)
+        for function, name in ((catena.analysis.radius_of_gyration, "radius_of_gyration"), (catena.analysis.end_to_end_distance, "end_to_end_distance")):
+            with self.assertRaisesRegex(catena.InputError, rf"those of 3 chains \({name}\): take analyse\(\.\.\.\)\['{name}'\]"):
+                function(record)
+        one = catena.analysis.radius_of_gyration(record.positions[:, :12], record.masses[:12])
+        np.testing.assert_allclose(catena.analysis.analyse(record).series("radius_of_gyration")[:, 0], one.values, rtol=1e-12)
+
+    def test_what_is_no_array_is_refused(self):
+        for wrong in ("run/trajectory.h5md", catena.Simulation(chains_of(catena.Model())), [[1, 2], [3]]):
+            with self.assertRaisesRegex(catena.InputError, r"the positions are of the type \w+ \(positions\): give an array of numbers, an atom group or a Record"):
+                catena.analysis.radius_of_gyration(wrong)
+        with self.assertRaisesRegex(catena.InputError, "the type dict is no simulation"):
+            catena.Record({})
+
+    @unittest.skipIf(MDAnalysis is None, "no MDAnalysis")
+    def test_bonds_of_atom_groups_tell_branches(self):
+        universe = MDAnalysis.Universe.empty(8, n_residues=2, n_segments=2, atom_resindex=[0] * 4 + [1] * 4, residue_segindex=[0, 1], trajectory=True)
+        universe.load_new((10 * chains(20, 8)).astype(np.float32), order="fac")
+        universe.add_TopologyAttr("masses", np.ones(8))
+        with self.assertRaisesRegex(catena.InputError, "those of 2 chains"):
+            catena.analysis.radius_of_gyration(universe)
+        with self.assertRaisesRegex(catena.InputError, "the atom group is empty"):
+            catena.analysis.analyse(universe.atoms[:0])
+        universe.add_TopologyAttr("bonds", [(0, 1), (0, 2), (2, 3), (4, 5), (5, 6), (6, 7)])
+        names = [curve.kind for curve in catena.analysis.analyse(universe).curves if curve.name == "bond_correlation"]
+        self.assertEqual(names, ["chain-2"])
+        self.assertRegex(" ".join(catena.analysis.analyse(universe).notes), "chain-1 is branched")
+        self.assertEqual(catena.analysis.analyse(universe.select_atoms("index 4:7")).curve("internal_distances").x.size, 3)
+        universe.add_TopologyAttr("bonds", [(0, 1), (2, 3), (4, 5), (5, 6), (6, 7)])
+        self.assertRegex(" ".join(catena.analysis.analyse(universe).notes), "the bonds of chain 1 do not join its atoms one after the other")
+
+
 class Analyses(Case):
     def test_curves_are_those_of_their_definitions(self):
         x = chains(64, 20)
@@ -156,7 +195,7 @@ class Analyses(Case):
     def test_wrong_arguments_are_refused(self):
         x = chains(10, 12)
         for arguments, words in (({"chains": [5, 6]}, "11 beads and the positions 12"), ({"chains": 5}, "no whole number"), ({"masses": np.ones(3)}, "3 masses"),
-                                 ({"residues": ["GLY"]}, "1 residues"), ({"slab": "w"}, "axis of the slab"), ({"slab": "z"}, r"slab='z'\): leave slab out"),
+                                 ({"residues": ["GLY"]}, "1 residues"), ({"slab": "w"}, "axis of the slab"), ({"slab": "z"}, r"slab='z'\): give a box, or leave slab out"),
                                  ({"discard": 1}, "discard"), ({"bins": 3}, "even"), ({"cutoff": -1}, "cutoff"), ({"box": [1, 2]}, "three positive edges"),
                                  ({"times": [1]}, "1 times"), ({"box": [9, 9, 9], "cutoff": 5}, r"exceeds half .*\(cutoff\)")):
             with self.assertRaisesRegex(catena.InputError, words):

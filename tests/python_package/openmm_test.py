@@ -446,8 +446,8 @@ class WithOpenMM(Case):
 
     def test_lengths_are_exact_whatever_the_tolerance(self):
         system = make_system(chain_parents(5), masses=[10.0] * 5)
-        integrator = ChainLangevinIntegrator(300, 1, 0.1)  # Sweeps converge slowly.
-        integrator.setRandomNumberSeed(2)
+        integrator = ChainLangevinIntegrator(300, 1, 0.11)  # Sweeps converge slowly.
+        integrator.setRandomNumberSeed(4)
         integrator.setConstraintTolerance(1e-3)
         here = context(system, integrator, walk(chain_parents(5)))
         worst = 0.0

@@ -39,6 +39,35 @@ class Quantities(Case):
         with self.assertRaisesRegex(catena.InputError, r"depends on other keys, .* \(chains\[0\].bodies\[1\].joint.stiffness\): give a plain number"):
             model.set("chains[0].bodies[1].joint.stiffness", make(10, "kilojoule"))
 
+    def check_others(self, make):
+        """Forces per particle and per mole, masses per mole, concentrations."""
+        for key, value, number in (("chains[0].bodies[0].force", make([1, 0, 0], ("piconewton", 1)), 0.602214076),
+                                   ("chains[0].bodies[0].force", make([1, 0, 0], ("kilojoule", 1), ("mole", -1), ("nanometer", -1)), 1),
+                                   ("chains[0].bodies[1].mass", make(2, ("gram", 1), ("mole", -1)), 2)):
+            model = catena.Model(units="md").set(key, value)
+            self.assertAlmostEqual(float(model._changes[-1][1].strip("[").split(",")[0]) / number, 1, delta=1e-8, msg=key)
+        for value, text in ((make(5, ("milligram", 1), ("milliliter", -1)), ' g/l"'), (make(0.002, ("mole", 1), ("liter", -1)), ' mol/l"')):
+            model = catena.Model(units="md").set("box.cubic.concentration", value)
+            self.assertTrue(model._changes[-1][1].endswith(text), model._changes)
+            self.assertAlmostEqual(float(model._changes[-1][1].strip('"').split()[0]), 5 if "g/l" in text else 0.002, delta=1e-12)
+        with self.assertRaisesRegex(catena.InputError, r"is no concentration \(chains\[0\].concentration\): give one such as '5 mg/ml'"):
+            catena.Model(units="md").set("chains[0].concentration", make(5, ("nanometer", 1)))
+
+    @unittest.skipIf(unit is None, "no openmm")
+    def test_those_of_openmm_may_be_per_particle_or_per_mole(self):
+        def make(number, *powers):
+            product = unit.dimensionless
+            for name, power in powers:
+                product = product * getattr(unit, name) ** power
+            return unit.Quantity(number, product)
+
+        self.check_others(make)
+
+    @unittest.skipIf(pint is None, "no pint")
+    def test_those_of_pint_may_be_per_particle_or_per_mole(self):
+        registry = pint.UnitRegistry()
+        self.check_others(lambda number, *powers: registry.Quantity(number, " * ".join(f"{name} ** {power}" for name, power in powers)))
+
     @unittest.skipIf(unit is None, "no openmm")
     def test_those_of_openmm_get_the_unit_of_the_key(self):
         self.check(lambda number, name: number / unit.nanosecond if name == "1/nanosecond" else unit.Quantity(number, getattr(unit, name)))
