@@ -165,7 +165,7 @@ class Chains {
 
 void check_distances(std::vector<Constraint> const& constraints) {
     for (std::size_t i = 0; i < constraints.size(); ++i)
-        if (!(constraints[i].distance > 0) || !std::isfinite(constraints[i].distance))
+        if (!(constraints[i].distance > 0 && std::isfinite(constraints[i].distance)))
             throw InputError(
                 fmt::format("a constraint to the distance {} nm", constraints[i].distance),
                 fmt::format("System, particles {} and {}", constraints[i].first,

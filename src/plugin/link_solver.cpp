@@ -17,6 +17,9 @@ namespace {
 
 /// Relative error below which no further sweep is made.
 constexpr double enough = 1e-12;
+/// Relative change of the error below which further sweeps change nothing: the constraints
+/// contradict each other slightly.
+constexpr double stays = 1e-3;
 /// Largest number of sweeps, as many as OpenMM's CCMA permits itself.
 constexpr int most_sweeps = 150;
 /// What to do about a step that fails.
@@ -70,7 +73,7 @@ class LinksOf final : public GroupLinks {
     void restore(std::span<Vec3> positions, double tolerance) override {
         take(positions);
         repeat(tolerance, [&] {
-            assemble();
+            assemble_or_refuse();
             correct();
         });
         give(positions);
@@ -114,7 +117,7 @@ class LinksOf final : public GroupLinks {
             });
         if (moved == 0 && assembled_) return;
         take(positions);
-        assemble();
+        assemble_or_refuse();
         assembled_ = true;
     }
     /// Assembles the matrices at position_.
@@ -124,15 +127,8 @@ class LinksOf final : public GroupLinks {
         Chains const c = chains();
         space_.for_each(group_.size, [c](std::int64_t k) { c.set_direction(k); });
         space_.for_each(std::ssize(tip_), [c](std::int64_t i) { c.set_tip_direction(i); });
-        try {
-            solver_->assemble_matrices({direction_.view(),
-                                        {},
-                                        group_.has_tips() ? tip_direction_.view() : View<3>{},
-                                        {},
-                                        {}});
-        } catch (ComputationError const&) {
-            refuse_positions();
-        }
+        solver_->assemble_matrices(
+            {direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}});
     }
     /// Sets the biases to the length errors at position_. Returns the largest relative one, NaN if
     /// a position is.
@@ -169,6 +165,8 @@ class LinksOf final : public GroupLinks {
             if (error <= std::min(enough, tolerance)) return;
             if (!std::isfinite(error)) refuse_positions();
             if (error > before / 2 && error <= rounding()) return;
+            bool const same = sweeps > 0 && std::fabs(error - before) <= stays * before;
+            if (same && error <= tolerance) return;
             if (sweeps == most_sweeps) refuse(error);
             before = error;
             sweep();
@@ -191,6 +189,13 @@ class LinksOf final : public GroupLinks {
             fmt::format("constraints stay open by {:.1e} of their length after {} sweeps (near "
                         "particle {}): {}",
                         error, most_sweeps, particle(worst), remedy));
+    }
+    void assemble_or_refuse() {
+        try {
+            assemble();
+        } catch (ComputationError const&) {
+            refuse_positions();
+        }
     }
     /// Throws ComputationError for positions at which the matrices do not exist.
     [[noreturn]] void refuse_positions() {
