@@ -22,11 +22,15 @@ TEXT
 output="" trial=yes pythons=()
 while [ $# -gt 0 ]; do
     case $1 in
-        --output) output=$(realpath -m "${2:?--output needs a folder}"); shift ;;
+        --output) [ $# -gt 1 ] || { echo "--output needs a folder (see jobs/wheels.sh --help)" >&2; exit 2; }
+            output=$(realpath -m "$2"); shift ;;
         --no-trial) trial=no ;;
         -h | --help) usage; exit 0 ;;
         -*) echo "unknown option: $1 (see jobs/wheels.sh --help)" >&2; exit 2 ;;
-        *) pythons+=("$(command -v "$1")") || { echo "no such interpreter ($1): name one such as python3.12" >&2; exit 2; } ;;
+        *) if ! python=$(command -v "$1") || ! "$python" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
+                echo "no CPython 3.10 or newer ($1): name an interpreter such as python3.12" >&2; exit 2
+            fi
+            pythons+=("$python") ;;
     esac
     shift
 done

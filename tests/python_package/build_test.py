@@ -38,6 +38,15 @@ class Builds(unittest.TestCase):
         for package in ["g++", "python3-dev", *needed]:
             self.assertIn(package, said)
 
+    def test_the_script_of_wheels_refuses_what_is_no_interpreter(self):
+        for arguments, words in ((["--wrong"], "unknown option: --wrong"), (["--output"], "--output needs a folder"),
+                                 (["cat"], "no CPython 3.10 or newer (cat): name an interpreter such as python3.12"),
+                                 (["no-such-python"], "no CPython 3.10 or newer (no-such-python)")):
+            done = subprocess.run([os.path.join(ROOT, "jobs", "wheels.sh"), *arguments], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 2)
+            self.assertEqual(len(done.stderr.splitlines()), 1)
+            self.assertIn(words, done.stderr)
+
 
 if __name__ == "__main__":
     if len(sys.argv) > 1:
