@@ -158,7 +158,7 @@ void note_complexes(Analysis& to, Topology const& topology) {
 /// Says of cross-linked kinds which of their numbers describe open chains.
 void note_crosslinks(Analysis& to, Topology const& topology) {
     for (Kind const& kind : to.kinds)
-        if (!topology.chains[kind.chains.front()].crosslinks.empty())
+        if (!kind.is_branched() && !topology.chains[kind.chains.front()].crosslinks.empty())
             to.notes.push_back(fmt::format(
                 "{} is cross-linked: internal distances and bonds follow the chain from bead to "
                 "bead, and scaling exponent and persistence length are not those of an open chain",

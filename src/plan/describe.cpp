@@ -28,6 +28,13 @@ Json gpu_levels_json(Scene const& scene) {
 
 std::string title_of(Scene const& scene) { return fmt::format("{} ({})", scene.title, scene.file); }
 
+/// Number of cross-links in words, with a blank before them; empty without any.
+std::string crosslinks_text(ChainSpec const& chain) {
+    std::size_t const count = chain.crosslinks.size();
+    if (count == 0) return {};
+    return fmt::format(" with {} cross-link{}", count, count == 1 ? "" : "s");
+}
+
 Table chain_table(Scene const& scene) {
     Table table({"chain", "copies", "bodies", "of", "base", "tip", "handles"}, {0, 3, 4, 5, 6});
     std::size_t constexpr most_rows = 20;
@@ -42,8 +49,8 @@ Table chain_table(Scene const& scene) {
             count == 1 ? scene.name_in_file(i)
                        : scene.name_in_file(i) + " .. " + scene.name_in_file(i + count - 1);
         table.add({name, std::to_string(count), std::to_string(first.size()),
-                   std::string(first.is_branched() ? "branched " : "") +
-                       (first.is_cross_linked() ? "cross-linked " : "") + scene::contents_of(first),
+                   (first.is_branched() ? "branched " : "") +
+                       std::string(scene::contents_of(first)) + crosslinks_text(first),
                    base_name(first), scene::tip_name(first), kind_name(first)});
     }
     return table;

@@ -99,6 +99,11 @@ def damaged_crosslinks_are_refused(output, folder):
     refused("its cross-links do not fit its chains", "analyse", damaged)
 
 
+def analyses_name_cross_linked_chains(output, folder):
+    told = catena("analyse", output, "--output", os.path.join(folder, "analysis"))
+    check("ring is cross-linked: internal distances and bonds follow the chain" in told and told.count("is cross-linked") == 1, told)
+
+
 def numbers_are_told(scene, folder):
     check("with 2 cross-links" in catena("check", scene), "check does not tell cross-links")
     plan = catena("plan", scene)
@@ -172,6 +177,7 @@ def main():
                 restarts_are_the_same(scene, positions, folder)
                 starts_from_a_frame(scene, output, positions, folder)
                 damaged_crosslinks_are_refused(output, folder)
+                analyses_name_cross_linked_chains(output, folder)
                 catena("run", scene, "--output", os.path.join(folder, "replicas"), "--quiet", "--set", "replicas=2")
         if openmm:
             a_constrained_system_runs(folder)
