@@ -19,11 +19,11 @@ namespace {
 constexpr double enough = 1e-12;
 /// Relative change of the error below which further sweeps change nothing: the constraints
 /// contradict each other slightly.
-constexpr double stays = 1e-3;
+constexpr double unchanged = 1e-3;
 /// Largest number of sweeps, as many as OpenMM's CCMA permits itself.
 constexpr int most_sweeps = 150;
 /// What to do about a step that fails.
-constexpr char const* remedy =
+constexpr char const* what_to_do =
     "call applyConstraints of the Context if its positions are new, minimise the energy, or take a "
     "smaller step";
 
@@ -165,7 +165,7 @@ class LinksOf final : public GroupLinks {
             if (error <= std::min(enough, tolerance)) return;
             if (!std::isfinite(error)) refuse_positions();
             if (error > before / 2 && error <= rounding()) return;
-            bool const same = sweeps > 0 && std::fabs(error - before) <= stays * before;
+            bool const same = sweeps > 0 && std::fabs(error - before) <= unchanged * before;
             if (same && error <= tolerance) return;
             if (sweeps == most_sweeps) refuse(error);
             before = error;
@@ -188,7 +188,7 @@ class LinksOf final : public GroupLinks {
         throw ComputationError(
             fmt::format("constraints stay open by {:.1e} of their length after {} sweeps (near "
                         "particle {}): {}",
-                        error, most_sweeps, particle(worst), remedy));
+                        error, most_sweeps, particle(worst), what_to_do));
     }
     void assemble_or_refuse() {
         try {
@@ -204,7 +204,7 @@ class LinksOf final : public GroupLinks {
             double const size = norm(position_.view().load(k));
             if (!std::isfinite(size))
                 throw ComputationError(fmt::format(
-                    "positions are no longer finite (particle {}): {}", particle(k), remedy));
+                    "positions are no longer finite (particle {}): {}", particle(k), what_to_do));
             if (c.linked(k) && !(norm(c.link(k)) > 0))
                 throw ComputationError(
                     fmt::format("particles {} and {}, which a constraint joins, coincide: set "
