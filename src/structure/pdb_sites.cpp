@@ -334,6 +334,29 @@ class ChainFilter {
     std::vector<std::string> names_, labels_;
 };
 
+/// Number of disulfide bridges that a file lists: records SSBOND, or rows `disulf1 ...` of
+/// `_struct_conn`.
+std::int64_t listed_bridges(std::string_view text) {
+    std::int64_t count = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        std::string_view const line = text.substr(at, 7);
+        count += line.starts_with("SSBOND") || (line.starts_with("disulf") && line.size() > 6 &&
+                                                line[6] >= '0' && line[6] <= '9');
+        at = text.find('\n', at);
+        at = at == std::string_view::npos ? text.size() : at + 1;
+    }
+    return count;
+}
+
+/// Notes that bridges are not read.
+void note_bridges(std::int64_t bridges, PdbSites& made) {
+    if (bridges > 0)
+        made.notes.push_back(fmt::format(
+            "`{}`: {} that the file lists {} not read; `crosslinks` joins beads", made.file,
+            bridges == 1 ? "a disulfide bridge" : fmt::format("{} disulfide bridges", bridges),
+            bridges == 1 ? "is" : "are"));
+}
+
 /// Notes further models and data blocks that are not read.
 void note_models(PdbSummary const& summary, StructureChoice const& choice, PdbSites& made) {
     if (summary.models.size() > 1 && !choice.model)
@@ -380,6 +403,7 @@ PdbSites read_pdb(std::string const& path, Node const& at, StructureChoice const
     if (selection.made.sites.empty())
         fail(at, "no residues of a chain in `" + name + "`", "give ATOM records of a chain");
     note_models(summary, choice, selection.made);
+    note_bridges(listed_bridges(file.text()), selection.made);
     selection.made.notes.insert(selection.made.notes.end(), filter.notes.begin(),
                                 filter.notes.end());
     selection.made.other_chains = filter.others;

@@ -17,6 +17,8 @@ class StructureFile {
     /// InputError.
     StructureFile(std::string bytes, std::string path);
 
+    /// The file's bytes, unpacked.
+    std::string const& text() const { return text_; }
     /// Calls `take` for each atom of the model of the number `model`, else of the first model.
     PdbSummary for_each_atom(std::optional<std::int64_t> model, TakeAtom const& take) const;
 

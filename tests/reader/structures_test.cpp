@@ -61,6 +61,21 @@ TEST_F(Structures, cross_links_count_beads_and_name_residues_of_other_numbers) {
               std::string::npos);
 }
 
+TEST_F(Structures, disulfide_bridges_of_the_file_are_noted) {
+    auto const noted = [&](std::string const& records) {
+        write("a.pdb", records + pdb_text(strand({"CYS", "GLY", "ALA", "SER", "CYS"}, "A", 1, 0)));
+        for (std::string const& note : with("").notes)
+            if (note.find("disulfide") != std::string::npos) return note.substr(note.find("`: "));
+        return std::string();
+    };
+    std::string const record = "SSBOND   1 CYS A    1    CYS A    5\n";
+    EXPECT_EQ(noted(""), "");
+    EXPECT_EQ(noted(record),
+              "`: a disulfide bridge that the file lists is not read; `crosslinks` joins beads");
+    EXPECT_EQ(noted(record + record),
+              "`: 2 disulfide bridges that the file lists are not read; `crosslinks` joins beads");
+}
+
 TEST_F(Structures, several_chains_of_a_file_bear_its_names) {
     std::vector<AtomLine> atoms = strand(gas_, "A", 1, 0) + strand(gas_, "B", 1, 0, 20);
     atoms.back().ends_chain = true;
