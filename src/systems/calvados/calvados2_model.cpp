@@ -160,6 +160,25 @@ std::string screening_text(calvados2::Yukawa const& y) {
                        : "nothing screens charges";
 }
 
+/// Number of links that close loops of chains: cross-links and rings. Chains with rigid bodies have
+/// none that could be told from others.
+std::size_t closing_links(BeadSystem const& beads) {
+    auto const open = static_cast<std::size_t>(beads.size()) - beads.chain_name.size();
+    return beads.rigid.empty() && beads.links.size() > open ? beads.links.size() - open : 0;
+}
+
+/// What becomes of the model's bonds.
+std::string links_text(OpenMmSpec const& spec, ForceResidues const& residues,
+                       BeadSystem const& beads, bool has_rna) {
+    std::size_t const closing = closing_links(beads), links = beads.links.size() - closing;
+    return fmt::format("{} {} the model's harmonic bonds of {}{}", links,
+                       links == 1 ? "link replaces" : "links replace",
+                       bond_text(spec, residues, beads, has_rna),
+                       closing == 0   ? ""
+                       : closing == 1 ? ", 1 more closes a loop"
+                                      : fmt::format(", {} more close loops", closing));
+}
+
 /// Sentences on parameters, cutoffs and links, for the user.
 std::vector<std::string> notes_on(OpenMmSpec const& spec, ForceResidues const& residues,
                                   BeadSystem const& beads, calvados2::Yukawa const& y,
@@ -168,15 +187,12 @@ std::vector<std::string> notes_on(OpenMmSpec const& spec, ForceResidues const& r
         residues.own() ? fmt::format(", parameters of `{}`", residues.own()->name()) : "";
     std::string const edge =
         spec.switch_width > 0 ? fmt::format("switched off over {} nm", spec.switch_width) : "cut";
-    return {
-        fmt::format("{} at {} K, {} mol/l: {}, {}{}", model_name(spec), spec.temperature,
-                    spec.ionic_strength, screening_text(y),
-                    histidine_text(spec, residues, beads.residue), own),
-        fmt::format("ashbaugh-hatch {} at {} nm, yukawa at {} nm", edge,
-                    calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff),
-        fmt::format("{}{} {} the model's harmonic bonds of {}", rigid_note(beads),
-                    beads.links.size(), beads.links.size() == 1 ? "link replaces" : "links replace",
-                    bond_text(spec, residues, beads, has_rna))};
+    return {fmt::format("{} at {} K, {} mol/l: {}, {}{}", model_name(spec), spec.temperature,
+                        spec.ionic_strength, screening_text(y),
+                        histidine_text(spec, residues, beads.residue), own),
+            fmt::format("ashbaugh-hatch {} at {} nm, yukawa at {} nm", edge,
+                        calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff),
+            rigid_note(beads) + links_text(spec, residues, beads, has_rna)};
 }
 
 }  // namespace
