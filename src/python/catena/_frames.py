@@ -47,10 +47,10 @@ def frames_of(
     edges = None if box is None else _edges_of(box, n_frames)
     counts = _counts_of(chains, n_beads)
     notes: list[str] = []
-    parents = _parents_of(positions, counts, notes) if is_group(positions) else []
     if times is not None:
         times = _row(times, n_frames, "times", "frames")
     _require_whole(x, counts, edges)
+    parents = _parents_of(positions, counts, notes) if is_group(positions) else []
     topology = _core.Topology.of(
         [(f"chain-{number + 1}", count) for number, count in enumerate(counts)], ring, masses.tolist(), names, None if edges is None else tuple(edges[0]), False, parents
     )
@@ -132,31 +132,6 @@ def _of_group(group: Any, chains: Any, masses: Any, residues: Any, box: Any, tim
     return chains, masses, residues, box, times
 
 
-def _parents_of(group: Any, counts: list[int], notes: list[str]) -> list[list[int]]:
-    """Returns the bead on which each bead of a branched chain hangs, by the bonds of an atom group; nothing for other chains.
-
-    Notes chains whose bonds do not tell.
-    """
-    bonds = getattr(group, "bonds", None) if hasattr(group.universe, "bonds") else None
-    if bonds is None or not len(bonds):
-        return []
-    place = {int(index): number for number, index in enumerate(group.indices)}
-    chain_of = np.repeat(np.arange(len(counts)), counts)
-    lower: list[list[int]] = [[] for _ in chain_of]
-    for a, b in bonds.indices:
-        first, last = sorted((place.get(int(a), -1), place.get(int(b), -1)))
-        if first >= 0 and chain_of[first] == chain_of[last]:
-            lower[last].append(first)
-    parents: list[list[int]] = []
-    for number, (begin, count) in enumerate(zip(np.cumsum([0, *counts]).tolist(), counts)):
-        on = [max(each) - begin if each else -1 for each in lower[begin : begin + count]]
-        is_tree = -1 not in on[1:]
-        parents.append(on if is_tree and on[1:] != list(range(count - 1)) else [])
-        if not is_tree and any(each >= 0 for each in on) and len(notes) < 10:
-            notes.append(f"the bonds of chain {number + 1} do not join its atoms one after the other: separations and bonds follow the order of the atoms")
-    return parents
-
-
 def _row(values: Any, count: int, name: str, of: str) -> np.ndarray:
     array = doubles(values, 1, name)
     if len(array) != count:
@@ -206,3 +181,28 @@ def _unless_wrapped(x: np.ndarray, counts: list[int], edges: np.ndarray | None, 
         notes.append("displacements and diffusion are left out: chains jump by more than half of the box between frames, as wrapped ones do")
         return None
     return times
+
+
+def _parents_of(group: Any, counts: list[int], notes: list[str]) -> list[list[int]]:
+    """Returns the bead on which each bead of a branched chain hangs, by the bonds of an atom group; nothing for other chains.
+
+    Notes chains whose bonds do not tell.
+    """
+    bonds = getattr(group, "bonds", None) if hasattr(group.universe, "bonds") else None
+    if bonds is None or not len(bonds):
+        return []
+    place = {int(index): number for number, index in enumerate(group.indices)}
+    chain_of = np.repeat(np.arange(len(counts)), counts)
+    lower: list[list[int]] = [[] for _ in chain_of]
+    for a, b in bonds.indices:
+        first, last = sorted((place.get(int(a), -1), place.get(int(b), -1)))
+        if first >= 0 and chain_of[first] == chain_of[last]:
+            lower[last].append(first)
+    parents: list[list[int]] = []
+    for number, (begin, count) in enumerate(zip(np.cumsum([0, *counts]).tolist(), counts)):
+        on = [max(each) - begin if each else -1 for each in lower[begin : begin + count]]
+        is_tree = -1 not in on[1:]
+        parents.append(on if is_tree and on[1:] != list(range(count - 1)) else [])
+        if not is_tree and any(each >= 0 for each in on) and len(notes) < 10:
+            notes.append(f"the bonds of chain {number + 1} do not join its atoms one after the other: separations and bonds follow the order of the atoms")
+    return parents
