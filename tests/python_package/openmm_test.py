@@ -596,7 +596,7 @@ class OnDevices(Case):
                         here = context(system, integrator, x, platform, precision=precision)
                     self.assertEqual(len(here.getMolecules()), 3)
                     v = velocities(here)
-                    self.assertLess(velocity_error(system, x, v), tolerance)
+                    self.assertLess(velocity_error(system, x, v), tolerance if with_it else 1e-4)
                     integrator.step(10)
                     ends.append((positions(here), velocities(here), v, *energies(here)))
                     self.assertLess(constraint_error(system, ends[-1][0]), tolerance)
@@ -607,7 +607,7 @@ class OnDevices(Case):
                     self.assertLess(constraint_error(system, positions(here)), max(1e-4, tolerance))
                     del here
                 for mine, theirs in zip(*ends):
-                    self.assertLess(np.max(np.abs(np.subtract(mine, theirs)) / np.maximum(1, np.abs(theirs))), 100 * tolerance)
+                    self.assertLess(np.max(np.abs(np.subtract(mine, theirs)) / np.maximum(1, np.abs(theirs))), 100 * max(tolerance, 1e-6))
 
     def test_what_is_refused(self):
         triangle, _ = ring(3)
