@@ -4,6 +4,8 @@ import copy
 import importlib.util
 import io
 import pickle
+import subprocess
+import sys
 import unittest
 
 import package  # first: it leaves where the package is not there
@@ -625,6 +627,14 @@ class OnDevices(Case):
             with self.assertRaisesRegex(openmm.OpenMMException, "ChainVerletIntegrator: (constraints stay open .*smaller step|positions are no longer)"):
                 integrator.step(2)
             del here
+
+
+class WithoutOpenMM(Case):
+    def test_the_import_says_what_is_missing(self):
+        program = "import sys; sys.modules['openmm'] = None\nimport catena.openmm"
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr.splitlines()[-1], r"ImportError: catena.openmm needs OpenMM \(.*\): pip install openmm")
 
 
 class Prepared(Case):
