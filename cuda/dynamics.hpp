@@ -5,11 +5,14 @@
 
 namespace catena::cuda {
 
-// Makes the dynamics of a group of beads on the GPU chosen last, as catena::make_bead_dynamics()
+/// Makes the dynamics of a group of beads, unbranched or branched, on the GPU chosen last, as
+/// catena::make_bead_dynamics()
 // does on the host. The executor runs the work that remains on the host. Group, executor and
 // communicator must outlive the returned object.
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&,
                                                      Executor const&, Communicator const&);
+std::unique_ptr<AbsoluteDynamics> make_branched_dynamics(ChainGroup const&, Scene const&,
+                                                         Executor const&, Communicator const&);
 /// Makes the dynamics of a group of rigid bodies in absolute coordinates, with the same
 /// preconditions.
 std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&,

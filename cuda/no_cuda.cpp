@@ -32,6 +32,10 @@ std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene co
                                                      Executor const&, Communicator const&) {
     throw ComputationError(why_not());
 }
+std::unique_ptr<AbsoluteDynamics> make_branched_dynamics(ChainGroup const&, Scene const&,
+                                                         Executor const&, Communicator const&) {
+    throw ComputationError(why_not());
+}
 std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&,
                                                       Executor const&, Communicator const&) {
     throw ComputationError(why_not());

@@ -1,9 +1,13 @@
 // Constant properties of a group's bodies and joints on a device.
 #pragma once
 
+#include <memory>
+#include <utility>
+
 #include "chain/chain_group.hpp"
 #include "cuda/space/device_field.cuh"
 #include "cuda/space/memory.hpp"
+#include "cuda/space/shared_models.hpp"
 
 namespace catena::cuda {
 
@@ -48,10 +52,13 @@ class AlikeField {
 
 /// Copy of a group's model: masses, inertias, handles, axes and joint types.
 /// ChainGroup describes each field; units are those of the scene (nm, ps, amu unless `units: si`).
-class DeviceModel {
+class ModelArrays {
   public:
-    explicit DeviceModel(ChainGroup const& group)
+    /// `with_inertias`: includes masses and inertias of bodies in joint coordinates, even if no
+    /// sweep reads them.
+    ModelArrays(ChainGroup const& group, bool with_inertias)
         : size_(group.size),
+          sweeps_read_inertias_(group.mass_of_sweeps().size() > 0),
           is_first_(group.is_first),
           is_last_(group.is_last),
           restricted_(group.restricted_of_joint),
@@ -64,8 +71,8 @@ class DeviceModel {
           axes1_(group.axes1),
           axes2_(group.axes2),
           screw_(group.screw),
-          mass_(group.mass_of_sweeps()),
-          inertia_(group.inertia_of_sweeps()) {}
+          mass_(with_inertias ? group.mass : group.mass_of_sweeps()),
+          inertia_(with_inertias ? group.inertia : group.inertia_of_sweeps()) {}
 
     /// Returns the addresses of the model in the form that leaves read.
     GroupView view() const {
@@ -81,14 +88,17 @@ class DeviceModel {
                 axes1_.view(),
                 axes2_.view(),
                 screw_.view(),
-                mass_.view(),
-                inertia_.view()};
+                sweeps_read_inertias_ ? mass() : ConstView<1>{},
+                sweeps_read_inertias_ ? inertia() : ConstView<6>{}};
     }
+    ConstView<1> mass() const { return mass_.view(); }
+    ConstView<6> inertia() const { return inertia_.view(); }
     /// Returns the number of restricted directions of every joint.
     std::uint8_t const* restricted() const { return restricted_.data(); }
 
   private:
     std::int64_t size_;
+    bool sweeps_read_inertias_;
     /// Flags of chains' first and last bodies, and restricted directions of joints.
     Buffer<std::uint8_t> is_first_, is_last_, restricted_;
     /// Index of the jointed tip of a last body, and screw of each jointed tip.
@@ -104,9 +114,28 @@ class DeviceModel {
     AlikeField<6> axes1_, axes2_;
     /// Parameters {c, s, rate, order} of joints that translate (ChainGroup::screw).
     FixedField<4> screw_;
-    /// Masses and inertias, only for articulated handles and runs on revolute joints.
+    /// Masses and inertias, for articulated handles, runs on revolute joints and dynamics in joint
+    /// coordinates.
     AlikeField<1> mass_;
     AlikeField<6> inertia_;
+};
+
+/// Handle of a group's model. Copies share the arrays.
+class DeviceModel {
+  public:
+    /// Makes arrays of its own, for sweeps alone.
+    explicit DeviceModel(ChainGroup const& group)
+        : arrays_(std::make_shared<ModelArrays const>(group, false)) {}
+    GroupView view() const { return arrays_->view(); }
+    std::uint8_t const* restricted() const { return arrays_->restricted(); }
+    ConstView<1> mass() const { return arrays_->mass(); }
+    ConstView<6> inertia() const { return arrays_->inertia(); }
+
+  private:
+    friend class SharedModels<DeviceModel, ModelArrays>;
+    explicit DeviceModel(std::shared_ptr<ModelArrays const> arrays) : arrays_(std::move(arrays)) {}
+
+    std::shared_ptr<ModelArrays const> arrays_;
 };
 
 }  // namespace catena::cuda

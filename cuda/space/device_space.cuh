@@ -20,7 +20,7 @@
 namespace catena::cuda {
 
 /// Space whose arrays are in the memory of the current GPU.
-class DeviceSpace {
+class DeviceSpace : public SharedModels<DeviceModel, ModelArrays> {
   public:
     /// Loops return before they are complete; wait() waits for them.
     static constexpr bool answers_at_once = false;

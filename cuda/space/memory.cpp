@@ -7,6 +7,7 @@
 
 #include "cuda/space/memory_estimator.hpp"
 #include "dca/leaf_choice.hpp"
+#include "dca/solvers/branched_solver.hpp"
 #include "dca/solvers/tree_solver.hpp"
 #include "dca/space_levels.hpp"
 #include "dynamics/bead_dynamics.hpp"
@@ -40,10 +41,11 @@ auto with_leaf(ChainGroup const& group, Use const& use) {
 }
 
 /// Makes the tree solver of the group over MemoryEstimator.
-std::unique_ptr<ChainSolver> tree_of(ChainGroup const& group, Communicator const& communicator) {
+std::unique_ptr<ChainSolver> tree_of(ChainGroup const& group, MemoryEstimator const& space,
+                                     Communicator const& communicator) {
     auto const make = [&](auto leaf) -> std::unique_ptr<ChainSolver> {
         return std::make_unique<TreeSolver<typename decltype(leaf)::type, MemoryEstimator>>(
-            group, MemoryEstimator(), communicator);
+            group, space, communicator);
     };
     return with_leaf(group, make);
 }
@@ -77,17 +79,25 @@ void count_levels(ChainGroup const& group, Scene const& scene) {
 void count_group(ChainGroup const& group, Scene const& scene, Backend backend,
                  Communicator const& communicator) {
     if (backend == Backend::cuda_levels) return count_levels(group, scene);
+    if (group.is_branched()) {
+        BeadDynamics<MemoryEstimator, BranchedFields>(
+            group, scene, MemoryEstimator(), communicator,
+            std::make_unique<BranchedSolver<MemoryEstimator>>(group, MemoryEstimator(),
+                                                              communicator));
+        return;
+    }
     if (group.axes != Axes::joint && group.directions == 1 && group.schedule.shared.empty())
         MemoryEstimator::Blocks{group};  // allocated at the first step, if blocks are used
+    MemoryEstimator const space;         // Shares the model between solver and dynamics.
     if (group.beads) {
-        BeadDynamics<MemoryEstimator>(group, scene, MemoryEstimator(), communicator,
-                                      tree_of(group, communicator));
+        BeadDynamics<MemoryEstimator>(group, scene, space, communicator,
+                                      tree_of(group, space, communicator));
     } else if (!group.linked && group.axes == Axes::joint) {
-        JointDynamicsIn<MemoryEstimator>(group, scene, MemoryEstimator(), communicator,
-                                         tree_of(group, communicator));
+        JointDynamicsIn<MemoryEstimator>(group, scene, space, communicator,
+                                         tree_of(group, space, communicator));
     } else {
-        RigidDynamics<MemoryEstimator>(group, scene, MemoryEstimator(), communicator,
-                                       tree_of(group, communicator));
+        RigidDynamics<MemoryEstimator>(group, scene, space, communicator,
+                                       tree_of(group, space, communicator));
     }
 }
 

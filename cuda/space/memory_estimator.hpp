@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cuda/space/memory.hpp"
+#include "cuda/space/shared_models.hpp"
 #include "dca/host_space.hpp"
 #include "dca/team_tree.hpp"
 #include "tree/stage_encoding.hpp"
@@ -130,39 +131,9 @@ class MemoryEstimator : public HostAccess {
         }
         DirectionsView view() const { return {}; }
     };
-    /// Model of a group, as cuda::DeviceModel.
-    class Model {
-      public:
-        explicit Model(ChainGroup const& group)
-            : is_first_(group.is_first),
-              is_last_(group.is_last),
-              restricted_(group.restricted_of_joint),
-              jointed_tip_(group.jointed_tip),
-              tip_screw_(group.tip_screw),
-              inverse_mass_(group.inverse_mass),
-              inverse_inertia_(group.inverse_inertia),
-              r1_(group.r1),
-              r2_(group.r2),
-              axes1_(group.axes1),
-              axes2_(group.axes2),
-              screw_(group.screw),
-              mass_(group.mass_of_sweeps()),
-              inertia_(group.inertia_of_sweeps()) {}
-        GroupView view() const { return {}; }
-        std::uint8_t const* restricted() const { return nullptr; }
-
-      private:
-        List<std::uint8_t> is_first_, is_last_, restricted_;
-        List<std::int32_t> jointed_tip_;
-        List<Vector<double, 4>> tip_screw_;
-        Alike<1> inverse_mass_;
-        Alike<6> inverse_inertia_;
-        Alike<3> r1_, r2_;
-        Alike<6> axes1_, axes2_;
-        Fixed<4> screw_;
-        Alike<1> mass_;
-        Alike<6> inertia_;
-    };
+    class ModelArrays;
+    class Model;
+    Model model(ChainGroup const& group) const;
     /// Records, as cuda::DeviceRecords.
     template <class T, dca::Order order>
     class Records {
@@ -296,12 +267,63 @@ class MemoryEstimator : public HostAccess {
     int threads() const { return 1; }
 
   private:
+    SharedModels<Model, ModelArrays> models_;
     /// Counts the memory of a list.
     template <class T>
     static void count(std::vector<T> const& items) {
         Count::add(static_cast<std::int64_t>(items.size() * sizeof(T)));
     }
 };
+
+/// Arrays of a group's model, as cuda::ModelArrays.
+class MemoryEstimator::ModelArrays {
+  public:
+    ModelArrays(ChainGroup const& group, bool with_inertias)
+        : is_first_(group.is_first),
+          is_last_(group.is_last),
+          restricted_(group.restricted_of_joint),
+          jointed_tip_(group.jointed_tip),
+          tip_screw_(group.tip_screw),
+          inverse_mass_(group.inverse_mass),
+          inverse_inertia_(group.inverse_inertia),
+          r1_(group.r1),
+          r2_(group.r2),
+          axes1_(group.axes1),
+          axes2_(group.axes2),
+          screw_(group.screw),
+          mass_(with_inertias ? group.mass : group.mass_of_sweeps()),
+          inertia_(with_inertias ? group.inertia : group.inertia_of_sweeps()) {}
+
+  private:
+    List<std::uint8_t> is_first_, is_last_, restricted_;
+    List<std::int32_t> jointed_tip_;
+    List<Vector<double, 4>> tip_screw_;
+    Alike<1> inverse_mass_;
+    Alike<6> inverse_inertia_;
+    Alike<3> r1_, r2_;
+    Alike<6> axes1_, axes2_;
+    Fixed<4> screw_;
+    Alike<1> mass_;
+    Alike<6> inertia_;
+};
+/// Handle of a group's model, as cuda::DeviceModel.
+class MemoryEstimator::Model {
+  public:
+    explicit Model(ChainGroup const& group)
+        : arrays_(std::make_shared<ModelArrays const>(group, false)) {}
+    GroupView view() const { return {}; }
+    std::uint8_t const* restricted() const { return nullptr; }
+    ConstView<1> mass() const { return {}; }
+    ConstView<6> inertia() const { return {}; }
+
+  private:
+    friend class SharedModels<Model, ModelArrays>;
+    explicit Model(std::shared_ptr<ModelArrays const> arrays) : arrays_(std::move(arrays)) {}
+    std::shared_ptr<ModelArrays const> arrays_;
+};
+inline MemoryEstimator::Model MemoryEstimator::model(ChainGroup const& group) const {
+    return models_.model(group);
+}
 
 /// Counts the memory of DeviceCrossing.
 class CountingCrossing {

@@ -23,8 +23,8 @@ constexpr double least_contrast = 2;  // least ratio of the densities of two pha
 constexpr char const* axes[] = {"x", "y", "z"};
 
 /// Index of the first frame to analyse.
-std::size_t first_frame(TrajectoryFile const& trajectory, Options const& options) {
-    std::size_t const frames = trajectory.steps().size();
+std::size_t first_frame(FrameSource const& source, Options const& options) {
+    std::size_t const frames = source.steps.size();
     auto const discarded =
         static_cast<std::size_t>(std::floor(options.discard * static_cast<double>(frames)));
     std::size_t const first = std::max(options.first, discarded);
@@ -40,12 +40,12 @@ std::size_t first_frame(TrajectoryFile const& trajectory, Options const& options
 }
 
 /// Axis of the slab: the one asked for, or the box's longest edge if there are several chains.
-std::optional<int> slab_axis(TrajectoryFile const& trajectory, Options const& options) {
-    std::optional<Vec3> const& box = trajectory.topology().box;
+std::optional<int> slab_axis(FrameSource const& source, Options const& options) {
+    std::optional<Vec3> const& box = source.topology.box;
     if (options.slab && !box)
         throw InputError("a density profile needs a periodic box, and the trajectory has none",
                          std::string("--slab ") + axes[*options.slab], "leave --slab out");
-    if (options.slab || !options.find_slab || !box || trajectory.topology().chains.size() < 2)
+    if (options.slab || !options.find_slab || !box || source.topology.chains.size() < 2)
         return options.slab;
     for (int i = 0; i < 3; ++i)
         if ((*box)[i] >= elongation * std::max((*box)[(i + 1) % 3], (*box)[(i + 2) % 3])) return i;
@@ -53,8 +53,8 @@ std::optional<int> slab_axis(TrajectoryFile const& trajectory, Options const& op
 }
 
 /// Cutoff of contacts; 0 for none.
-double cutoff_of(TrajectoryFile const& trajectory, Options const& options) {
-    return options.cutoff.value_or(trajectory.topology().si ? 0 : default_cutoff);
+double cutoff_of(FrameSource const& source, Options const& options) {
+    return options.cutoff.value_or(source.topology.si ? 0 : default_cutoff);
 }
 
 /// Adds profiles and phases of a slab.
@@ -171,44 +171,44 @@ void count_replicas(Analysis& to) {
         "{} replicas are independent of each other: errors are at least those between them", most));
 }
 
-Analysis frame_of(TrajectoryFile const& trajectory, Options const& options) {
+Analysis frame_of(FrameSource const& source, Options const& options) {
     Analysis to;
-    to.trajectory = trajectory.name();
-    to.title = trajectory.topology().title;
-    to.length_unit = trajectory.topology().si ? "m" : "nm";
-    to.time_unit = trajectory.topology().si ? "s" : "ps";
-    to.kinds = kinds_of(trajectory.topology(), trajectory.is_by_members());
-    to.frames_in_file = trajectory.steps().size();
-    to.first_frame = first_frame(trajectory, options);
+    to.trajectory = source.name;
+    to.title = source.topology.title;
+    to.length_unit = source.topology.si ? "m" : "nm";
+    to.time_unit = source.topology.si ? "s" : "ps";
+    to.kinds = kinds_of(source.topology, source.by_members);
+    to.frames_in_file = source.steps.size();
+    to.first_frame = first_frame(source, options);
     auto const skipped = static_cast<std::ptrdiff_t>(to.first_frame);
     auto const end = static_cast<std::ptrdiff_t>(std::min(to.frames_in_file - 1, options.last)) + 1;
-    to.steps.assign(trajectory.steps().begin() + skipped, trajectory.steps().begin() + end);
-    to.times.assign(trajectory.times().begin() + skipped, trajectory.times().begin() + end);
-    to.cutoff = cutoff_of(trajectory, options);
-    if (!trajectory.has_residues())
+    to.steps.assign(source.steps.begin() + skipped, source.steps.begin() + end);
+    to.times.assign(source.times.begin() + skipped, source.times.begin() + end);
+    to.cutoff = cutoff_of(source, options);
+    if (!source.has_residues)
         to.notes.emplace_back(
             "there is no topology.pdb beside the trajectory: chains with equal masses are taken as "
             "copies");
-    note_complexes(to, trajectory.topology());
+    note_complexes(to, source.topology);
     return to;
 }
 
 }  // namespace
 
-Analysis analyse(TrajectoryFile const& trajectory, Options const& options) {
-    Topology const& topology = trajectory.topology();
-    Analysis to = frame_of(trajectory, options);
+Analysis analyse(FrameSource const& source, Options const& options) {
+    Topology const& topology = source.topology;
+    Analysis to = frame_of(source, options);
     auto const frames = std::ssize(to.steps);
     std::vector<ChainNumbers> chains;
     for (Kind const& kind : to.kinds) chains.emplace_back(topology, kind, frames);
     std::optional<DensityProfile> profile;
-    if (auto const axis = slab_axis(trajectory, options))
+    if (auto const axis = slab_axis(source, options))
         profile.emplace(topology, to.kinds, *axis, options.bins, frames);
     std::unique_ptr<Contacts> contacts;
     if (to.cutoff > 0) contacts = std::make_unique<Contacts>(topology, to.kinds, to.cutoff, frames);
     Snapshot snapshot;
     for (std::size_t f = 0; f < to.steps.size(); ++f) {
-        trajectory.read(to.first_frame + f, snapshot);
+        source.read(to.first_frame + f, snapshot);
         for (ChainNumbers& of_kind : chains) of_kind.add(snapshot);
         if (profile) profile->add(snapshot);
         if (contacts) contacts->add(snapshot);
@@ -220,6 +220,18 @@ Analysis analyse(TrajectoryFile const& trajectory, Options const& options) {
     note_uneven(to, even);
     count_replicas(to);
     return to;
+}
+
+Analysis analyse(TrajectoryFile const& trajectory, Options const& options) {
+    FrameSource const source{
+        trajectory.name(),
+        trajectory.topology(),
+        trajectory.has_residues(),
+        trajectory.is_by_members(),
+        trajectory.steps(),
+        trajectory.times(),
+        [&](std::size_t frame, Snapshot& into) { trajectory.read(frame, into); }};
+    return analyse(source, options);
 }
 
 }  // namespace catena::analysis

@@ -2,8 +2,11 @@
 // diffusion.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +35,9 @@ struct Quantity {
     Estimate value;
     /// Says what the number was computed from, or why there is none.
     std::string basis;
+    /// Range and prefactor of a scaling exponent's fit R = R_0 s^nu.
+    Range fit = {};
+    double prefactor = NAN;
 };
 
 /// A function of one variable, of one kind of chains or of the whole system.
@@ -65,8 +71,20 @@ struct Analysis {
     std::vector<std::string> notes;
 };
 
-/// Analyses the frames of a trajectory, one at a time. Throws InputError if no frame is left, for a
+/// Frames to be analysed, wherever they are.
+struct FrameSource {
+    std::string name;
+    Topology const& topology;
+    bool has_residues = true;  // false: all residues are "UNK", because no names were found
+    bool by_members = false;   // true: chains of the name COMPLEX:MEMBER are members
+    std::span<std::int64_t const> steps;
+    std::span<double const> times;
+    std::function<void(std::size_t frame, Snapshot& into)> read;
+};
+
+/// Analyses frames, one at a time. Throws InputError if no frame is left, for a
 /// slab without a box and for a cutoff longer than half the box.
+Analysis analyse(FrameSource const&, Options const&);
 Analysis analyse(TrajectoryFile const&, Options const&);
 
 /// Writes the tables of an analysis into an existing folder: summary.csv, one table per kind of

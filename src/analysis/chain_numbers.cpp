@@ -147,7 +147,8 @@ void ChainNumbers::report_distances(Analysis& to, Options const& options) const 
         {"scaling_exponent", kind_.name, "", nu.value,
          nu.why.empty() ? fmt::format("R = {:.4g} {} s^nu, fit s = {:g} to {:g}", scaling.prefactor,
                                       to.length_unit, nu.range.least, nu.range.most)
-                        : nu.why + ", choose --fit MIN,MAX"});
+                        : nu.why + ", choose --fit MIN,MAX",
+         nu.range, scaling.prefactor});
 }
 
 void ChainNumbers::report_bonds(Analysis& to) const {

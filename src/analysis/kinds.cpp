@@ -21,6 +21,7 @@ std::string signature(Topology const& topology, Topology::Chain const& chain) {
     key += masses;
     for (std::size_t k = first; k < first + count; ++k) key += topology.residue[k] + ' ';
     for (std::int64_t const parent : chain.parent) key += std::to_string(parent) + ' ';
+    for (auto const& [a, b] : chain.crosslinks) key += fmt::format("{}-{} ", a, b);
     return key;
 }
 

@@ -64,7 +64,7 @@ class PeerBenchmark::Own {
         Solution found = solution_of(system_);
         if (scene_.chains.front().is_beads() || way_ == Way::joint) return found;
         ChainSystem::Accelerations const a = system_.accelerations();
-        ChainSystem::Snapshot const at = system_.snapshot();
+        SceneMotion const at = system_.snapshot();
         // Angular acceleration and velocity of the previous body.
         Vec3 alpha = Vec3::zero(), omega = Vec3::zero();
         for (std::size_t k = 0; k < at.omega.size(); ++k) {

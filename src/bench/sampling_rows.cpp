@@ -55,7 +55,7 @@ class CatenaMover final : public Mover {
         catena_.adapt();
     }
     Moment now() override {
-        ChainSystem::Snapshot snapshot = catena_.observe();
+        SceneMotion snapshot = catena_.observe();
         double const kinetic = kinetic_energy(catena_.scene(), snapshot);
         return {std::move(snapshot.position), kinetic, catena_.constraint_error()};
     }

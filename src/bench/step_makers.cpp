@@ -43,7 +43,7 @@ std::vector<StepTimeline> CatenaSteps::timelines(int count) {
 
 void CatenaSteps::adapt() { stepper_->adapt(watch_, last_error_, tolerance()); }
 
-ChainSystem::Snapshot CatenaSteps::observe() {
+SceneMotion CatenaSteps::observe() {
     system_.make_current();
     stepper_->prepare(nullptr);
     stepper_->observe({});

@@ -24,7 +24,7 @@ class CatenaSteps {
     /// run` does.
     void adapt();
     /// Returns the bodies in scene order with their present velocities.
-    ChainSystem::Snapshot observe();
+    SceneMotion observe();
     /// Returns the sum of all terms of the potential energy, kJ/mol.
     double energy();
 

@@ -48,7 +48,7 @@ Scene start_in_memory(Scene const& given, bool is_forced, Communicator const& al
 }
 
 /// Appends consecutive bodies of the scene to a state.
-void append(SimulationState& state, ChainSystem::Bodies const& bodies) {
+void append(SimulationState& state, SceneBodies const& bodies) {
     for (std::size_t k = 0; k < bodies.motion.position.size(); ++k) {
         state.position.push_back(as_triple(bodies.motion.position[k]));
         state.velocity.push_back(as_triple(bodies.motion.velocity[k]));
@@ -99,9 +99,10 @@ class Simulation::Content {
         c.arrays[array_of_step] = {scene_.dynamics.step};
         c.arrays[array_of_watch] = watch_.state();
         stepper_->save(c);
-        ChainSystem::OwnState own = system_.own_state();
+        CheckpointParts const parts(system_);
+        OwnState own = parts.own_state();
         stepper_->save(own);
-        c.arrays.merge(system_.gathered(own));
+        c.arrays.merge(parts.gathered(own));
         return bytes_of(c);
     }
 
@@ -175,10 +176,11 @@ class Simulation::Content {
     SimulationState present() {
         SimulationState state;
         stepper_->observe({true, true});
+        Snapshots const snapshots(system_);
         state.step = step_;
         state.time = time();
-        system_.pass_bodies(system_.own_bodies(true, true),
-                            [&](ChainSystem::Bodies const& bodies) { append(state, bodies); });
+        snapshots.pass(snapshots.own(true, true),
+                       [&](SceneBodies const& bodies) { append(state, bodies); });
         state.kinetic_energy = kinetic_energy(scene_, system_.snapshot());
         if (has_temperature(scene_) && (!scene_.si || has_thermostat(scene_.dynamics)))
             state.temperature = temperature_of(scene_, dof_, state.kinetic_energy);

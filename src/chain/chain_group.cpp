@@ -9,6 +9,7 @@
 #include "chain/chain_order.hpp"
 #include "joints/joint_models.hpp"
 #include "scene/branch_limits.hpp"
+#include "scene/branches.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
@@ -215,7 +216,7 @@ void allocate(ChainGroup& group) {
     group.joint.assign(n, FreeJoint::type);
     group.mass = Field<1>(n);
     group.inverse_mass = Field<1>(n);
-    if (group.beads || group.linked) group.length = Field<1>(n);
+    if (group.beads || group.linked) group.length = Field<1>(group.link_entries());
     if (group.beads) return;
     group.inertia = Field<6>(n);
     group.inverse_inertia = Field<6>(n);
@@ -282,15 +283,48 @@ void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
             restricted(s.top_chain_of_joint[i], s.top_body_of_joint[i]);
 }
 
-/// Sets the inboard bodies of branched chains and cuts the chains into paths.
-void fill_branches(ChainGroup& group, Scene const& scene, bool pairwise) {
+/// Sets the cross-links of whole chains.
+void fill_crosslinks(ChainGroup& group, Scene const& scene) {
+    for (std::size_t p = 0; p < group.pieces.size(); ++p) {
+        dca::Piece const& piece = group.pieces[p];
+        for (CrossLink const& link : scene.chains[group.chain[piece.chain]].crosslinks)
+            group.crosslinks.push_back({piece.local + link.inboard, piece.local + link.outboard,
+                                        static_cast<std::int64_t>(p)});
+    }
+}
+
+/// Sets the lengths of cross-links.
+void fill_crosslink_lengths(ChainGroup& group, Scene const& scene) {
+    std::int64_t k = group.first_crosslink();
+    for (dca::Piece const& piece : group.pieces)
+        for (CrossLink const& link : scene.chains[group.chain[piece.chain]].crosslinks)
+            group.length.set(k++, {{link.length}});
+}
+
+/// Sets the counts of the paths on all ranks. Collective.
+void count_branches(ChainGroup& group, Communicator const& communicator) {
+    dca::BranchCounts const own = group.branches.counts();
+    auto const largest = [&](std::int64_t value) {
+        return static_cast<std::int64_t>(communicator.max(static_cast<double>(value)));
+    };
+    group.branches.of_all_ranks = {communicator.sum(own.paths), communicator.sum(own.runs),
+                                   largest(own.phases), largest(own.levels), largest(own.depth)};
+}
+
+/// Sets the inboard bodies of branched or cross-linked chains and cuts the chains into paths.
+/// Collective.
+void fill_branches(ChainGroup& group, Scene const& scene, bool pairwise,
+                   Communicator const& communicator) {
     group.inboard.assign(static_cast<std::size_t>(group.size), -1);
     for (dca::Piece const& piece : group.pieces) {
         std::vector<std::int64_t> const& parent = scene.chains[group.chain[piece.chain]].parent;
-        for (std::int64_t i = 0; i < piece.count; ++i)
-            if (parent[i] >= 0) group.inboard[piece.local + i] = piece.local + parent[i];
+        for (std::int64_t i = 1; i < piece.count; ++i)
+            group.inboard[piece.local + i] =
+                piece.local +
+                static_cast<std::int64_t>(scene::inboard_of(parent, static_cast<std::size_t>(i)));
     }
     group.branches = dca::Branches(group.inboard, pairwise);
+    count_branches(group, communicator);
     group.schedule.runs.clear();
     group.schedule.levels.clear();
     group.schedule.roots.clear();
@@ -374,8 +408,10 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     }
     group.directions = directions_of(group);
     group.planar = group.directions == 2;
+    bool const by_paths = scene::goes_by_paths(any);
     group.partition = dca::Partition(lengths, pairwise, communicator.size(), tips);
-    if (!options.shares.empty())
+    group.partition.whole_chains = by_paths;
+    if (by_paths || !options.shares.empty())
         dca::cut_by_shares(group.partition, communicator.size(), options.shares);
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
@@ -386,9 +422,11 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.tips_in_scene = std::any_of(tips.begin(), tips.end(),
                                       [](dca::TipTo t) { return t != dca::TipTo::nothing; });
     if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
+    if (by_paths) fill_crosslinks(group, scene);
     allocate(group);
     fill(group, scene, options.executor);
-    if (scene::branches(any)) fill_branches(group, scene, pairwise);
+    if (by_paths) fill_crosslink_lengths(group, scene);
+    if (by_paths) fill_branches(group, scene, pairwise, communicator);
     if (!group.beads) fill_carried(group, scene);
     fill_restricted(group, scene, options.implicit);
     find_neighbours(group, communicator.rank());
@@ -399,6 +437,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
 
 /// Returns a number that is equal for chains of one group.
 int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
+    if (spec.is_cross_linked()) return 8;
     if (scene::branches(spec)) return 7;
     if (spec.is_beads()) return 0;
     if (spec.is_linked()) return 1;

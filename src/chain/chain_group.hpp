@@ -46,6 +46,14 @@ struct LocalRing {
     bool is_whole() const { return neighbour < 0; }
 };
 
+/// Rigid link between two beads of one chain, beside the links to their inboard beads.
+struct LocalCrossLink {
+    /// Local indices of the beads.
+    std::int64_t inboard = 0, outboard = 0;
+    /// Index of the chain's piece in ChainGroup::pieces.
+    std::int64_t piece = 0;
+};
+
 /// Joint of this rank with prescribed motion.
 struct LocalDrive {
     std::int64_t body = 0;           // local index of the joint's outboard body
@@ -85,11 +93,22 @@ struct ChainGroup {
     dca::Partition partition;
     std::vector<dca::Piece> pieces;  // pieces of this rank
     dca::Schedule schedule;
-    /// Inboard body of each local body, -1 for first bodies; empty unless the chains are branched.
+    /// Inboard body of each local body, -1 for first bodies; empty unless the chains are branched
+    /// or cross-linked.
     std::vector<std::int64_t> inboard;
-    /// Paths of branched chains, which replace the runs, merges and roots of `schedule`.
+    /// Paths of branched or cross-linked chains, which replace the runs, merges and roots of
+    /// `schedule`. A rank owns all bodies of such a chain, or none.
     dca::Branches branches;
-    bool is_branched() const { return !inboard.empty(); }
+    bool is_branched() const { return branches.of_all_ranks.paths > 0; }
+    /// Cross-links, chain by chain. Arrays over links hold that of `crosslinks[c]` at
+    /// first_crosslink() + c.
+    std::vector<LocalCrossLink> crosslinks;
+    std::int64_t first_crosslink() const { return size + 1; }
+    /// Number of entries of arrays over links: those of the bodies, one of the halo, and those of
+    /// cross-links, if there are any.
+    std::int64_t link_entries() const {
+        return crosslinks.empty() ? size : first_crosslink() + std::ssize(crosslinks);
+    }
 
     // Arrays over local bodies.
     /// Number of local bodies.
@@ -105,7 +124,7 @@ struct ChainGroup {
     /// Mass, amu, and its inverse.
     Field<1> mass, inverse_mass;
     // Groups with links.
-    /// Length of the inboard link, nm.
+    /// Length of the inboard link, nm; [link_entries()].
     Field<1> length;
     // Groups with rigid bodies.
     /// Inertia about the centre of mass and its inverse, B (lower triangle: xx yx yy zx zy zz), amu

@@ -71,12 +71,8 @@ struct TreeCounts {
 TreeCounts counts_of(ChainGroup const& group) {
     dca::ChainTree const& tree = longest_tree(group);
     if (!group.is_branched()) return {tree.runs, tree.levels(), tree.depth()};
-    TreeCounts counts{0, 0, group.branches.depth()};
-    for (dca::PhaseLists const& lists : group.branches.lists) {
-        counts.runs += std::ssize(lists.runs);
-        counts.levels = std::max(counts.levels, std::ssize(lists.levels));
-    }
-    return counts;
+    dca::BranchCounts const& branched = group.branches.of_all_ranks;
+    return {branched.runs, branched.levels, branched.depth};
 }
 
 /// Describes the tree of a group's longest chain, or the paths of branched chains.
@@ -88,8 +84,9 @@ std::string tree_text(ChainGroup const& group) {
             ? fmt::format(
                   "{} bodies in {} and {}: {} of up to {} bodies, then at most {} of "
                   "merges on a path",
-                  group.partition.bodies(), counted(group.branches.paths(), "path", "paths"),
-                  counted(group.branches.phases(), "phase", "phases"),
+                  group.partition.bodies(),
+                  counted(group.branches.of_all_ranks.paths, "path", "paths"),
+                  counted(group.branches.of_all_ranks.phases, "phase", "phases"),
                   counted(counts.runs, "run", "runs"), tree.run_length,
                   counted(counts.levels, "level", "levels"))
             : fmt::format("{} bodies: {} of up to {} bodies, then {} of merges", tree.bodies,
@@ -99,19 +96,39 @@ std::string tree_text(ChainGroup const& group) {
                        dca::tree_table_version);
 }
 
+/// What the chains of a group are called, with a blank: "branched ", "cross-linked " or nothing.
+std::string chain_word(ChainGroup const& group) {
+    if (!group.crosslinks.empty()) return "cross-linked ";
+    return group.is_branched() ? "branched " : "";
+}
+
+/// Describes the cost of cross-links.
+std::string crosslinks_text(ChainGroup const& group) {
+    std::int64_t most = 0, here = 0;
+    for (std::size_t c = 0; c < group.crosslinks.size(); ++c) {
+        bool const same = c > 0 && group.crosslinks[c].piece == group.crosslinks[c - 1].piece;
+        here = same ? here + 1 : 1;
+        most = std::max(most, here);
+    }
+    return fmt::format(
+        "{}, up to {} a chain: after each matrix sweep {} for their responses and systems of up to "
+        "{} x {}; bias sweeps are made twice",
+        std::ssize(group.crosslinks), most, counted(most, "bias sweep", "bias sweeps"), most, most);
+}
+
 /// Adds the description of a group: blocks, tree, units, collectives and memory.
 void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport const& report) {
     dca::ChainTree const& tree = longest_tree(group);
     Rounds const rounds = rounds_of(group);
     std::vector<std::int64_t> const shares = shares_of(group);
-    text.heading(fmt::format(
-        "{} of {} ({})",
-        counted(group.partition.chains(), group.is_branched() ? "branched chain" : "chain",
-                group.is_branched() ? "branched chains" : "chains"),
-        group.beads ? "beads on links" : "bodies", group.kind()));
+    text.heading(fmt::format("{} of {} ({})",
+                             counted(group.partition.chains(), chain_word(group) + "chain",
+                                     chain_word(group) + "chains"),
+                             group.beads ? "beads on links" : "bodies", group.kind()));
     text.entry("blocks", block_text(group.beads, group.directions, group.handles));
     TreeCounts const counts = counts_of(group);
     text.entry("tree", tree_text(group));
+    if (!group.crosslinks.empty()) text.entry("cross-links", crosslinks_text(group));
     if (!group.is_branched())
         text.entry(
             "units",
@@ -135,6 +152,7 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
                     {"runs", counts.runs},
                     {"levels", counts.levels},
                     {"depth", counts.depth},
+                    {"crosslinks", group.crosslinks.size()},
                     {"units", group.is_branched() ? 1 : tree.units},
                     {"bodies_of_ranks", shares},
                     {"collectives",
@@ -341,6 +359,11 @@ void add_notes(Text& text, Json& json, Scene const& scene,
         notes.push_back(
             "branched chains are predicted as unbranched ones; with short side chains they take "
             "about twice as long, with many branchings longer: --measure shows it");
+    if (std::any_of(scene.chains.begin(), scene.chains.end(),
+                    [](ChainSpec const& chain) { return chain.is_cross_linked(); }))
+        notes.push_back(
+            "cross-linked chains are predicted without their cross-links, which take further bias "
+            "sweeps: --measure shows the time");
     json["notes"] = Json::array();
     for (std::string const& note : notes) {
         json["notes"].push_back(note);
@@ -402,8 +425,7 @@ Outcome calibrate(Communicator const& communicator, PlanRequest const& request) 
 
 Outcome plan_scene(Scene const& given, Communicator const& communicator,
                    PlanRequest const& request) {
-    scene::refuse_unsupported_branches(given,
-                                       std::max<std::int64_t>(communicator.size(), request.ranks));
+    scene::refuse_unsupported_branches(given);
     Axes const axes = axes_for(given);
     Predictions predictions;
     auto const choose = [&](Scene const& scene, std::string const& no_gpu) {

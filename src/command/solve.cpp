@@ -43,6 +43,8 @@ std::string why_no_inverse_dynamics(ChainSystem const& system) {
     if (scene.bodies() > most_bodies_in_json)
         return fmt::format("there are more than {} bodies", most_bodies_in_json);
     if (any_chain([](ChainSpec const& c) { return c.is_linked(); })) return "bodies are on links";
+    if (any_chain([](ChainSpec const& c) { return c.is_cross_linked(); }))
+        return "beads are cross-linked";
     if (any_chain([](ChainSpec const& c) { return !c.is_beads() && c.tip == Tip::jointed; }))
         return "bodies form a loop";
     std::string lacking;

@@ -3,23 +3,17 @@
 // with another inverse mass, a matrix E, and another force (src/dca/README.md, "Branched chains").
 #pragma once
 
-#include <vector>
-
 #include "dca/body_leaf.hpp"
 #include "tree/branches.hpp"
 
 namespace catena::dca {
 
-/// What the side paths of each fork make of its bead.
+/// What the side paths of each fork make of its bead, in the memory of a Space.
 struct ForkBeads {
-    explicit ForkBeads(std::int64_t forks)
-        : inverse_mass(static_cast<std::size_t>(forks)),
-          push(static_cast<std::size_t>(forks), Vec3::zero()),
-          force(static_cast<std::size_t>(forks), Vec3::zero()) {}
     /// Inverse of the bead's mass and of what its side links hold, E; W.
-    std::vector<Sym3> inverse_mass;
+    Sym3* inverse_mass = nullptr;
     /// Force of the side paths on the bead at rest, and all other forces on the bead; W.
-    std::vector<Vec3> push, force;
+    Vec3 *push = nullptr, *force = nullptr;
 };
 
 /// Leaf of beads on projected handles. Places are the indices that sweeps pass; the views that they
@@ -30,22 +24,22 @@ class BranchedLeaf {
     static constexpr int K = 1;
     static constexpr bool beads = true, in_joints = false, projected = true,
                           reads_neighbours = true, by_inertia = false;
-    /// All arguments must outlive the leaf. `fork` is the fork of each place, -1 for none; `ends`
+    /// All arrays must outlive the leaf. `fork` is the fork of each place, -1 for none; `ends`
     /// is 1 for the last place of each path.
     BranchedLeaf(GroupView const& group, std::int64_t const* body, std::int32_t const* fork,
-                 std::uint8_t const* ends, ForkBeads& forks)
-        : group_(group), body_(body), fork_(fork), ends_(ends), forks_(&forks) {}
+                 std::uint8_t const* ends, ForkBeads const& forks)
+        : group_(group), body_(body), fork_(fork), ends_(ends), forks_(forks) {}
     void set(ConfigurationView const& c) { direction_ = c.direction; }
     /// Sets where accelerate() writes joint forces, by bead; it may be absent.
     void set(DirectionsView const& joint_force) { joint_force_ = joint_force; }
-    GroupView const& group() const { return group_; }
+    CATENA_HD GroupView const& group() const { return group_; }
     /// Returns the unit direction of the inboard link of the bead at a place; 0 without a link.
-    Vec3 inboard(std::int64_t place) const { return direction_.load(body_[place]); }
+    CATENA_HD Vec3 inboard(std::int64_t place) const { return direction_.load(body_[place]); }
 
-    SegmentMatrix<double, 1> matrix(std::int64_t place) const {
+    CATENA_HD SegmentMatrix<double, 1> matrix(std::int64_t place) const {
         Vec3 const u1 = inboard(place), u2 = outboard(place);
         if (fork_[place] < 0) return bead_matrix(inverse_mass(place), u1, u2, Vector<double, 1>{});
-        Sym3 const& e = forks_->inverse_mass[at(fork_[place])];
+        Sym3 const& e = forks_.inverse_mass[fork_[place]];
         Vec3 const by_inboard = e * u1;
         SegmentMatrix<double, 1> s;
         s.z11(0, 0) = dot(u1, by_inboard);
@@ -53,7 +47,7 @@ class BranchedLeaf {
         s.z12(0, 0) = dot(u2, by_inboard);
         return s;
     }
-    SegmentBias<double, 1> bias(LoadsView const& loads, std::int64_t place) const {
+    CATENA_HD SegmentBias<double, 1> bias(LoadsView const& loads, std::int64_t place) const {
         auto b = SegmentBias<double, 1>::zero();
         if (loads.force.origin || fork_[place] >= 0) {
             Vec3 const a = accelerated(place, force(loads, place));
@@ -65,43 +59,43 @@ class BranchedLeaf {
     /// Writes the acceleration and the joint force of the bead at a place from the forces at the
     /// two links of its path. Of a fork, keeps the force of both links and of the loads instead of
     /// the acceleration.
-    void accelerate(LoadsView const& loads, std::int64_t place,
-                    Vector<double, 1> const& inboard_force, Vector<double, 1> const& outboard_force,
-                    AccelerationsView const& out) const {
+    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t place,
+                              Vector<double, 1> const& inboard_force,
+                              Vector<double, 1> const& outboard_force,
+                              AccelerationsView const& out) const {
         if (joint_force_) joint_force_.store<1>(body_[place], inboard_force);
         if (!out.acceleration.origin && fork_[place] < 0) return;
         Vec3 const pushed =
             plus_scaled(plus_scaled(force(loads, place), inboard_force[0], inboard(place)),
                         -outboard_force[0], outboard(place));
         if (fork_[place] >= 0)
-            forks_->force[at(fork_[place])] = pushed;
+            forks_.force[fork_[place]] = pushed;
         else
             out.acceleration.store(body_[place], inverse_mass(place) * pushed);
     }
 
   private:
-    static std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
-    double inverse_mass(std::int64_t place) const {
+    CATENA_HD double inverse_mass(std::int64_t place) const {
         return group_.inverse_mass.load(body_[place])[0];
     }
-    Vec3 outboard(std::int64_t place) const {
+    CATENA_HD Vec3 outboard(std::int64_t place) const {
         return ends_[place] != 0 ? Vec3::zero() : direction_.load(body_[place + 1]);
     }
-    Vec3 force(LoadsView const& loads, std::int64_t place) const {
+    CATENA_HD Vec3 force(LoadsView const& loads, std::int64_t place) const {
         return loads.force.origin ? loads.force.load(body_[place]) : Vec3::zero();
     }
     /// Returns the acceleration of the bead at a place under a force in addition to that of its
     /// side paths.
-    Vec3 accelerated(std::int64_t place, Vec3 const& force) const {
+    CATENA_HD Vec3 accelerated(std::int64_t place, Vec3 const& force) const {
         if (fork_[place] < 0) return inverse_mass(place) * force;
-        return forks_->inverse_mass[at(fork_[place])] * (force + forks_->push[at(fork_[place])]);
+        return forks_.inverse_mass[fork_[place]] * (force + forks_.push[fork_[place]]);
     }
 
     GroupView group_;
     std::int64_t const* body_;
     std::int32_t const* fork_;
     std::uint8_t const* ends_;
-    ForkBeads* forks_;
+    ForkBeads forks_;
     ConstView<3> direction_;
     DirectionsView joint_force_;
 };

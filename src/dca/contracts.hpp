@@ -117,6 +117,9 @@ concept SolverSpace =
              double* number, std::int64_t count) {
         { model.view() } -> std::convertible_to<GroupView>;
         { model.restricted() } -> std::same_as<std::uint8_t const*>;
+        { model.mass() } -> std::same_as<ConstView<1>>;
+        { model.inertia() } -> std::same_as<ConstView<6>>;
+        { space.model(group) } -> std::same_as<typename Space::Model>;
         space.for_each(count, NoWork{});
         { space.largest(count, NoValue{}) } -> std::same_as<double>;
         space.climb(tree, sweep);

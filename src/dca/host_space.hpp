@@ -22,6 +22,20 @@
 
 namespace catena {
 
+/// Model of a group that sweeps and dynamics read.
+class HostModel {
+  public:
+    explicit HostModel(ChainGroup const& group) : group_(group) {}
+    GroupView view() const { return group_.view(); }
+    std::uint8_t const* restricted() const { return group_.restricted_of_joint.data(); }
+    /// Mass and inertia of bodies in joint coordinates, also where no sweep reads them.
+    ConstView<1> mass() const { return group_.mass.view(); }
+    ConstView<6> inertia() const { return group_.inertia.view(); }
+
+  private:
+    ChainGroup const& group_;
+};
+
 /// The Space of this rank's host: arrays in host memory, loops on an Executor.
 class HostSpace : public HostAccess {
   public:
@@ -69,16 +83,10 @@ class HostSpace : public HostAccess {
       private:
         ConstView<D> view_;
     };
-    /// Model of a group that the sweeps read.
-    class Model {
-      public:
-        explicit Model(ChainGroup const& group) : group_(group) {}
-        GroupView view() const { return group_.view(); }
-        std::uint8_t const* restricted() const { return group_.restricted_of_joint.data(); }
-
-      private:
-        ChainGroup const& group_;
-    };
+    using Model = HostModel;
+    /// Returns the model that the group's solver and its dynamics share. There is one as long as
+    /// one of them holds it.
+    Model model(ChainGroup const& group) const { return Model(group); }
     /// Storage of `count` records, initially zero.
     template <class T, dca::Order order>
     class Records {

@@ -29,7 +29,7 @@ void add_tree(ChainGroup const& group, Communicator const& communicator, SolverR
         report.run_length = std::max(report.run_length, tree.run_length);
         report.depth = std::max(report.depth, tree.depth());
     }
-    if (group.is_branched()) report.depth = group.branches.depth();
+    if (group.is_branched()) report.depth = group.branches.of_all_ranks.depth;
 }
 
 void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {

@@ -29,6 +29,12 @@ struct TipForce {
     Vector<double, 6> wrench{};
 };
 
+/// Tension of a cross-link of a chain of the scene; above 0 if it pulls.
+struct CrossLinkTension {
+    std::int64_t chain = 0;
+    double tension = 0;
+};
+
 /// Accelerations and constraint forces of bodies, W, for output and checks.
 struct BodyResults {
     std::vector<Vec3> alpha;         // Angular acceleration, rad/ps^2; empty for beads.
@@ -36,6 +42,8 @@ struct BodyResults {
     /// Constraint [torque, force] on body k at its inboard joint.
     std::vector<Vector<double, 6>> joint_force;
     std::vector<TipForce> tip_force;
+    /// Tension of each cross-link of the group, in the order of ChainGroup::crosslinks.
+    std::vector<CrossLinkTension> crosslink_tension;
 };
 
 /// The larger of two numbers; NaN if either is NaN.

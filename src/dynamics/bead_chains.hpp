@@ -31,12 +31,22 @@ struct BeadPlaces {
     CATENA_HD_IN_PLACE bool to_ground(std::int64_t k) const { return k < size && is_first[k] != 0; }
     /// Bead on which the inboard link of bead k ends, unless it ends on the ground.
     CATENA_HD_IN_PLACE std::int64_t inboard(std::int64_t k) const { return k - 1; }
+    /// Bead at the outboard end of link k.
+    CATENA_HD_IN_PLACE std::int64_t outboard(std::int64_t k) const { return k; }
 };
-/// BeadPlaces of branched chains.
+/// BeadPlaces of branched and cross-linked chains. Link k > size is a cross-link
+/// (ChainGroup::first_crosslink()).
 struct BranchedPlaces : BeadPlaces {
     /// ChainGroup::inboard.
     std::int64_t const* inboard_bead = nullptr;
-    CATENA_HD_IN_PLACE std::int64_t inboard(std::int64_t k) const { return inboard_bead[k]; }
+    /// ChainGroup::crosslinks.
+    LocalCrossLink const* crosslink = nullptr;
+    CATENA_HD_IN_PLACE std::int64_t inboard(std::int64_t k) const {
+        return k < size ? inboard_bead[k] : crosslink[k - size - 1].inboard;
+    }
+    CATENA_HD_IN_PLACE std::int64_t outboard(std::int64_t k) const {
+        return k < size ? k : crosslink[k - size - 1].outboard;
+    }
 };
 /// Field types for the beads of a rank, in arrays of a Space. PartFields (bead_part.hpp) is the
 /// alternative in registers.
@@ -47,10 +57,13 @@ struct BeadFields {
     template <int D>
     using Found = View<D>;
     using Biases = DirectionsView;
+    /// True if chains may have cross-links.
+    static constexpr bool has_crosslinks = false;
 };
-/// BeadFields of branched chains.
+/// BeadFields of branched and cross-linked chains.
 struct BranchedFields : BeadFields {
     using Places = BranchedPlaces;
+    static constexpr bool has_crosslinks = true;
 };
 
 /// State and operations of beads. `Fields` chooses the storage, as BeadFields does; bead k counts
@@ -75,9 +88,9 @@ struct BeadChainsIn {
 
     CATENA_HD_IN_PLACE bool linked(std::int64_t k) const { return places.linked(k); }
     CATENA_HD_IN_PLACE bool to_ground(std::int64_t k) const { return places.to_ground(k); }
-    /// Bead k from its inboard neighbour or from the anchor on the ground.
+    /// Outboard end of link k from its inboard one, a bead or the anchor on the ground.
     CATENA_HD_IN_PLACE Vec3 link(std::int64_t k) const {
-        return position.load(k) -
+        return position.load(places.outboard(k)) -
                (to_ground(k) ? places.piece_of(k).anchor : position.load(places.inboard(k)));
     }
     /// Value of the field `of` (positions or velocities) at the bead that tip i is attached to;
@@ -157,8 +170,8 @@ struct BeadChainsIn {
     }
     /// Velocity bias of the link of bead k at the observed velocities.
     CATENA_HD_IN_PLACE double swing_of(std::int64_t k) const {
-        Vec3 const v =
-            observed.load(k) - (to_ground(k) ? Vec3::zero() : observed.load(places.inboard(k)));
+        Vec3 const v = observed.load(places.outboard(k)) -
+                       (to_ground(k) ? Vec3::zero() : observed.load(places.inboard(k)));
         return velocity_bias(v, direction.load(k), length.at(k, 0));
     }
     /// Velocity bias of the link of tip i at the observed velocities.

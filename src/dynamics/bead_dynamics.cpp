@@ -2,7 +2,7 @@
 #include "dynamics/bead_dynamics.hpp"
 
 #include "dynamics/branched_fixman.hpp"
-
+#include "dynamics/crosslink_fixman.hpp"
 #include "joints/joint_models.hpp"
 
 namespace catena {
@@ -45,6 +45,13 @@ std::vector<BeadSolution::Outboard> BeadSolution::outboard_forces() const {
         else if (std::int64_t const p = group.inboard[static_cast<std::size_t>(k)]; p >= 0)
             add(all[static_cast<std::size_t>(p)], joint_force.load<1>(k)[0] * direction.load(k));
     }
+    for (std::size_t i = 0; i < group.crosslinks.size(); ++i) {
+        LocalCrossLink const& link = group.crosslinks[i];
+        std::int64_t const k = group.first_crosslink() + static_cast<std::int64_t>(i);
+        Vec3 const f = joint_force.load<1>(k)[0] * direction.load(k);
+        add(all[static_cast<std::size_t>(link.inboard)], f);
+        add(all[static_cast<std::size_t>(link.outboard)], -f);
+    }
     return all;
 }
 
@@ -55,6 +62,10 @@ BodyResults BeadSolution::results() const {
         Vec3 const f = joint_force.load<1>(k)[0] * direction.load(k);
         r.joint_force.push_back({{0, 0, 0, f[0], f[1], f[2]}});
     }
+    for (std::int64_t i = 0; i < std::ssize(group.crosslinks); ++i)
+        r.crosslink_tension.push_back(
+            {group.scene_chain(group.crosslinks[static_cast<std::size_t>(i)].inboard),
+             -joint_force.load<1>(group.first_crosslink() + i)[0]});
     for (LocalTip const& tip : group.tips) {
         Vec3 const f = outboard_force(tip.body);
         r.tip_force.push_back({group.scene_chain(tip.body), {{0, 0, 0, -f[0], -f[1], -f[2]}}});
@@ -91,19 +102,22 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
         worst = larger(worst, relative(turning + dot(u, there - acceleration.load(tip.body)),
                                        terms[tip.body][3] + b[3] + turning));
     }
-    for (std::int64_t k = 0; k < group.size; ++k) {
-        if (!is_rod(group.joint[k])) continue;
-        bool const grounded = group.is_first[k] != 0;
-        std::int64_t const p = group.is_branched() ? group.inboard[k] : k - 1;
-        Vector<double, 4> const mine = terms[k], before = grounded ? Vector<double, 4>::zero()
-                                                                   : terms.view().load(p);
+    auto const compare = [&](std::int64_t link, std::int64_t from, std::int64_t to, bool grounded) {
+        Vector<double, 4> const mine = terms[to], before = grounded ? Vector<double, 4>::zero()
+                                                                    : terms.view().load(from);
         Vec3 const across{{mine[0] - before[0], mine[1] - before[1], mine[2] - before[2]}};
-        Vec3 const apart = velocity.load(k) - (grounded ? Vec3::zero() : velocity.load(p));
+        Vec3 const apart = velocity.load(to) - (grounded ? Vec3::zero() : velocity.load(from));
         double const turning =
-            velocity_bias(apart, direction.load(k), group.length.view().at(k, 0));
-        worst = larger(worst, relative(dot(direction.load(k), across) + turning,
+            velocity_bias(apart, direction.load(link), group.length.view().at(link, 0));
+        worst = larger(worst, relative(dot(direction.load(link), across) + turning,
                                        mine[3] + before[3] + turning));
-    }
+    };
+    for (std::int64_t k = 0; k < group.size; ++k)
+        if (is_rod(group.joint[k]))
+            compare(k, group.is_branched() ? group.inboard[k] : k - 1, k, group.is_first[k] != 0);
+    for (std::int64_t i = 0; i < std::ssize(group.crosslinks); ++i)
+        compare(group.first_crosslink() + i, group.crosslinks[i].inboard,
+                group.crosslinks[i].outboard, false);
     return communicator.max(worst);
 }
 
@@ -126,7 +140,10 @@ std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Sc
     if (group.is_branched()) {
         auto beads = std::make_unique<BeadDynamics<HostSpace, BranchedFields>>(
             group, scene, space, communicator, std::move(solver));
-        if (scene.dynamics.fixman)
+        if (auto* const crosslinked = dynamic_cast<dca::CrossLinkedSolver*>(&beads->solver());
+            scene.dynamics.fixman && crosslinked != nullptr)
+            beads->use(std::make_unique<CrossLinkFixman>(group, scene, executor, *crosslinked));
+        else if (scene.dynamics.fixman)
             beads->use(std::make_unique<BranchedFixman>(group, scene, executor));
         return with_constants(std::move(beads));
     }

@@ -47,10 +47,12 @@ Field<1> halves_over(Field<1> const& length, Executor const&);
 
 /// State, arrays and operations of bead chains; DeviceBeads serves OpenMM on the same GPU,
 /// ClosingDrifts the closing of links.
-/// `Fields` is BranchedFields for branched chains, which only the host has.
+/// `Fields` is BranchedFields for branched and cross-linked chains.
 template <class Space, class Fields = BeadFields>
 class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public ClosingDrifts {
     using Field3 = typename Space::template FieldOf<3>;
+    template <class T>
+    using List = typename Space::template List<T>;
     using Chains = BeadChainsIn<Fields>;
     static constexpr bool is_branched = std::is_same_v<Fields, BranchedFields>;
 
@@ -70,8 +72,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
                          [&](std::int64_t k) {
                              return scene.chains[group.scene_chain(k)].beads.position.back();
                          })),
-          is_first_(group.is_first),
-          has_link_(links_),
+          lists_{List<std::uint8_t>(group.is_first), List<std::uint8_t>(links_),
+                 List<std::int64_t>(group.inboard)},
           pieces_(piece_),
           tips_(tip_),
           mass_(group.mass),
@@ -84,10 +86,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
           force_(group.size),
           momentum_(group.size),
           change_(group.size),
-          direction_(group.size),
+          direction_(group.link_entries()),
           tip_direction_(group.has_tips() ? group.size : 0),
-          bias_(group.size + 1, group.directions),
-          joint_force_(group.size + 1, group.directions),
+          bias_(group.link_entries() + 1, group.directions),
+          joint_force_(group.link_entries() + 1, group.directions),
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions),
           ring_ends_(group, space, communicator) {
@@ -212,6 +214,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
         double const at_tips = space_.largest(
             tips(), [c] CATENA_LAMBDA(std::int64_t i) -> double { return c.tip_error(i); });
+        if constexpr (Fields::has_crosslinks) {
+            double across = 0;
+            for (std::int64_t i = 0; i < std::ssize(group_.crosslinks); ++i)
+                across = larger(across, c.error(group_.first_crosslink() + i));
+            return larger(larger(along, at_tips), across);
+        }
         return larger(along, at_tips);
     }
     double own_error_beyond(double tolerance) override {
@@ -249,6 +257,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         Chains const c = chains();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
         space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_swing(i); });
+        Way{*this}.each_crosslink([c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
         solver_->solve({{}, force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
                        {{}, change_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
     }
@@ -310,6 +319,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         void each_tip(Action const& action) const {
             d.space_.for_each(d.tips(), action);
         }
+        template <class Action>
+        void each_crosslink(Action const& action) const {
+            if constexpr (Fields::has_crosslinks) d.over_crosslinks(action);
+        }
         void from_inboard() const {
             exchange_from_inboard(d.communicator_, d.group_, d.position_.view(), d.space_);
             d.ring_ends_.take(d.position_.view(), d.position_.view());
@@ -332,6 +345,15 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             space_.for_each(group_.size, [c = chains(), f = forces_] CATENA_LAMBDA(std::int64_t k) {
                 c.take_forces(k, f);
             });
+    }
+
+    /// Calls action(link) for every cross-link. Public because of nvcc.
+    template <class Action>
+    void over_crosslinks(Action const& action) const {
+        space_.for_each(std::ssize(group_.crosslinks),
+                        [action, first = group_.first_crosslink()] CATENA_LAMBDA(std::int64_t i) {
+                            action(first + i);
+                        });
     }
 
   private:
@@ -359,6 +381,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
                 return false;
         for (std::int64_t i = 0; i < tips(); ++i)
             if (!(c.tip_error(i) <= tolerance)) return false;
+        for (std::int64_t i = 0; i < std::ssize(group_.crosslinks); ++i)
+            if (!(c.error(group_.first_crosslink() + i) <= tolerance)) return false;
         return true;
     }
     /// The parts of a step, executed loop by loop.
@@ -408,10 +432,13 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     /// Views of all arrays for loops over beads.
     Chains chains() {
         Chains c;
-        if constexpr (is_branched) c.places.inboard_bead = group_.inboard.data();
+        if constexpr (is_branched) {
+            c.places.inboard_bead = lists_.inboard.data();
+            c.places.crosslink = group_.crosslinks.data();
+        }
         c.places.size = group_.size;
-        c.places.is_first = is_first_.data();
-        c.places.has_link = has_link_.data();
+        c.places.is_first = lists_.is_first.data();
+        c.places.has_link = lists_.has_link.data();
         c.mass = mass_.view();
         c.inverse_mass = inverse_mass_.view();
         c.length = length_.view();
@@ -452,7 +479,11 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     Field<1> halves_;
     std::vector<LocalPiece> piece_;
     std::vector<HeldTip> tip_;
-    typename Space::template List<std::uint8_t> is_first_, has_link_;
+    /// As BeadPlaces and BranchedPlaces.
+    struct Lists {
+        List<std::uint8_t> is_first, has_link;
+        List<std::int64_t> inboard;
+    } lists_;
     typename Space::template List<LocalPiece> pieces_;
     typename Space::template List<HeldTip> tips_;
     typename Space::template Fixed<1> mass_, inverse_mass_, length_, half_over_length_;

@@ -35,6 +35,7 @@ struct PartPlaces {
     CATENA_HD_IN_PLACE bool linked(std::int64_t i) const { return i > 0 || !starts || to_anchor; }
     CATENA_HD_IN_PLACE bool to_ground(std::int64_t i) const { return i == 0 && starts; }
     CATENA_HD_IN_PLACE std::int64_t inboard(std::int64_t i) const { return i - 1; }
+    CATENA_HD_IN_PLACE std::int64_t outboard(std::int64_t i) const { return i; }
 };
 /// Counterpart of BeadFields for a part in registers.
 struct PartFields {
@@ -141,6 +142,8 @@ class BeadPart {
         }
         template <class Action>
         CATENA_HD_IN_PLACE void each_tip(Action const&) const {}
+        template <class Action>
+        CATENA_HD_IN_PLACE void each_crosslink(Action const&) const {}
         CATENA_EITHER_SIDE
         CATENA_HD_IN_PLACE void from_inboard() const {
             part->position_[0] = part->team_.from_before(part->position_[length]);

@@ -2,10 +2,11 @@
 // loop over all chains (BeadDynamics), or one block of threads that takes whole chains through the
 // step in one launch.
 //
-// A policy `Way` has these members. each_bead(action), each_link(action) and each_tip(action) run
-// loops; each_bead(make, take) runs take(k, make(k)) with a long make(). from_inboard() and
-// from_outboard() fetch neighbours' positions. assemble() assembles the matrices for the current
-// directions; project(momentum, out) and close(bias, tip_bias, out) solve with them.
+// A policy `Way` has these members. each_bead(action), each_link(action), each_tip(action) and
+// each_crosslink(action) run loops; each_bead(make, take) runs take(k, make(k)) with a long make().
+// from_inboard() and from_outboard() fetch neighbours' positions. assemble() assembles the matrices
+// for the current directions; project(momentum, out) and close(bias, tip_bias, out) solve with
+// them.
 #pragma once
 
 #include "dca/body_leaf.hpp"
@@ -28,6 +29,7 @@ struct BeadStep {
         way.from_outboard();
         way.each_link([c = c] CATENA_LAMBDA(std::int64_t k) { c.set_direction(k); });
         way.each_tip([c = c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_direction(i); });
+        way.each_crosslink([c = c] CATENA_LAMBDA(std::int64_t k) { c.set_direction(k); });
     }
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void assemble_matrices() const { way.assemble(); }
@@ -54,6 +56,7 @@ struct BeadStep {
         way.from_inboard();
         way.each_bead([c = c] CATENA_LAMBDA(std::int64_t k) { c.set_excess(k); });
         way.each_tip([c = c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_excess(i); });
+        way.each_crosslink([c = c] CATENA_LAMBDA(std::int64_t k) { c.set_excess(k); });
         way.close(c.bias, c.tip_bias, c.change);
         way.each_bead(
             [c = c, per_step = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.close(k, per_step); });
@@ -96,6 +99,9 @@ struct WayOfBlock {
     CATENA_HD void each_tip(Action const& action) const {
         block.each_tip(action);
     }
+    CATENA_EITHER_SIDE
+    template <class Action>
+    CATENA_HD void each_crosslink(Action const&) const {}
     CATENA_HD void from_inboard() const {}
     CATENA_HD void from_outboard() const {}
     CATENA_EITHER_SIDE

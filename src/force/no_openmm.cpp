@@ -1,5 +1,6 @@
-// Stubs for a build without OpenMM: every function that needs it throws "built without OpenMM".
-#include "error.hpp"
+// Stubs for a program without OpenMM: every function that needs it throws no_openmm().
+#include "force/no_openmm.hpp"
+
 #include "force/contacts.hpp"
 #include "force/openmm_force.hpp"
 #include "force/openmm_integrator.hpp"
@@ -7,48 +8,38 @@
 
 namespace catena {
 
-namespace {
-
-char const* const remedy =
-    "install OpenMM (pip install openmm, or Debian's libopenmm-dev) and build again, or leave "
-    "forces.openmm out";
-
-}  // namespace
-
 std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const& beads,
                                                Communicator const&, ChainsOnDevice const&) {
-    throw built_without("OpenMM", beads.scene_file + ": forces.openmm", remedy);
+    throw no_openmm(beads.scene_file + ": forces.openmm");
 }
 
 std::unique_ptr<OpenMmForce> make_openmm_contacts(OpenMmSpec const&, BeadSystem const& beads,
                                                   Communicator const&, double) {
-    throw built_without("OpenMM", beads.scene_file + ": forces.openmm", remedy);
+    throw no_openmm(beads.scene_file + ": forces.openmm");
 }
 
 SystemLinks read_system_links(OpenMmSpec const&, std::string const& scene_file) {
-    throw built_without("OpenMM", scene_file + ": forces.openmm", remedy);
+    throw no_openmm(scene_file + ": forces.openmm");
 }
 
 ImportedSystem import_openmm_system(OpenMmSpec const&, std::string const& scene_file) {
-    throw built_without("OpenMM", scene_file + ": forces.openmm", remedy);
+    throw no_openmm(scene_file + ": forces.openmm");
 }
 
-BondedChains chains_by_bonds(OpenMmSpec const&, std::string const& name) {
-    throw built_without("OpenMM", name, remedy);
-}
+BondedChains chains_by_bonds(OpenMmSpec const&, std::string const& name) { throw no_openmm(name); }
 
 OpenMmState read_openmm_state(std::string const&, std::string const& where) {
-    throw built_without("OpenMM", where, remedy);
+    throw no_openmm(where);
 }
 
 std::optional<ScreenedChains> read_screened_chains(std::string const&, std::string const& where) {
-    throw built_without("OpenMM", where, remedy);
+    throw no_openmm(where);
 }
 
 std::unique_ptr<OpenMmIntegrator> make_openmm_integrator(OpenMmSpec const&, BeadSystem const& beads,
                                                          Communicator const&, OwnLinks,
                                                          OwnRun const&, std::vector<Vec3> const&) {
-    throw built_without("OpenMM", beads.scene_file, remedy);
+    throw no_openmm(beads.scene_file);
 }
 
 std::string openmm_version() { return "none"; }

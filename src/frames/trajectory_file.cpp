@@ -220,6 +220,24 @@ void TrajectoryFile::read_chains() {
                          "run the scene again");
     if (has(root, "catena/members")) read_members();
     if (has(root, "catena/parent")) read_branches();
+    if (has(root, "catena/crosslinks")) read_crosslinks();
+}
+
+void TrajectoryFile::read_crosslinks() {
+    Place const root{series_->file.get(), name_, reading};
+    auto const sites = read_list<std::int64_t>(root, "catena/crosslinks", H5T_NATIVE_INT64);
+    auto chain = topology_.chains.begin();
+    bool sound = sites.size() % 2 == 0;
+    for (std::size_t i = 0; sound && i < sites.size(); i += 2) {
+        std::int64_t const a = sites[i], b = sites[i + 1];
+        while (chain != topology_.chains.end() && a >= chain->first + chain->count) ++chain;
+        sound = chain != topology_.chains.end() && a >= chain->first && b > a &&
+                b < chain->first + chain->count;
+        if (sound) chain->crosslinks.push_back({a - chain->first, b - chain->first});
+    }
+    if (!sound)
+        throw InputError("the trajectory is damaged, its cross-links do not fit its chains", name_,
+                         "run the scene again");
 }
 
 void TrajectoryFile::read_branches() {

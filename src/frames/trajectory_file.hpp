@@ -57,6 +57,7 @@ class TrajectoryFile {
     void read_chains();
     void read_members();
     void read_branches();
+    void read_crosslinks();
     void read_residues();
 
     std::string name_;

@@ -32,14 +32,14 @@ struct Crowd {
     double excluded = 0;
     /// Positions, not wrapped into the box.
     std::vector<Vec3> at;
-    /// Length of the link to the preceding point; 0 if there is none.
+    /// Length of the link to the point on which each point hangs; 0 if there is none.
     std::vector<double> length;
     /// Index of the first bead of each chain, and the end of the last chain.
     std::vector<std::size_t> first;
     /// Walls of each chain; empty if no chain has any.
     std::vector<Walls> walls = {};
-    /// A single branched chain: the point on which each point hangs, -1 for the first. Empty for
-    /// unbranched chains. Only relax() takes branches.
+    /// Point on which each point hangs, with a smaller number; -1 for the first of each chain and
+    /// for fixed points. Empty if no chain branches: each point then hangs on the preceding one.
     std::vector<std::int64_t> parent = {};
 
     std::size_t chains() const { return first.size() - 1; }
@@ -56,6 +56,10 @@ struct Crowd {
             most = std::max(most, range(chain, axis).beyond(point[axis]));
         return most;
     }
+    /// Point on which point i of a chain hangs. Precondition: i is not the chain's first.
+    std::size_t inboard(std::size_t i) const {
+        return parent.empty() ? i - 1 : static_cast<std::size_t>(parent[i]);
+    }
     /// True if a link joins points i and j.
     bool linked(std::size_t i, std::size_t j) const {
         if (!parent.empty())
@@ -68,8 +72,7 @@ struct Crowd {
 /// excluded distance from all points; a walk steps back when no place is free. If that fails, the
 /// bead is placed with the least overlap. All chains grow at the same pace, so that none meets a
 /// full box. Walks keep within the walls. The result depends on the arguments alone. Precondition:
-/// edges of at least 2.5
-/// excluded distances; links between half of the excluded distance and the excluded distance.
+/// edges of at least 2.5 excluded distances; links of at least half of the excluded distance.
 void grow(Crowd& crowd, std::uint64_t seed);
 
 /// Result of a relaxation.

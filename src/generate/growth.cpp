@@ -70,7 +70,7 @@ class Growth {
         Tip& tip = tips_[chain];
         std::size_t const i = crowd_.first[chain] + tip.grown;
         std::int32_t const neighbour =
-            tip.grown > 0 ? static_cast<std::int32_t>(i) - 1 : Occupied::none;
+            tip.grown > 0 ? static_cast<std::int32_t>(crowd_.inboard(i)) : Occupied::none;
         double const enough = crowd_.excluded * crowd_.excluded;
         bool const choosy = tip.allowance > 0;
         double best = -std::numeric_limits<double>::infinity();
@@ -89,15 +89,15 @@ class Growth {
         return true;
     }
 
-    /// Draws a trial position: at the link's length from the preceding bead, or anywhere for the
-    /// first bead.
+    /// Draws a trial position: at the link's length from the bead on which it hangs, or anywhere
+    /// for the first bead.
     Vec3 candidate(std::size_t chain) {
         Tip& tip = tips_[chain];
         std::size_t const i = crowd_.first[chain] + tip.grown;
         Draws draws(seed_of_stream(seed_, chain), static_cast<std::int64_t>(tip.grown),
                     tip.draws++);
         if (tip.grown > 0)
-            return plus_scaled(crowd_.at[i - 1], crowd_.length[i], draws.on_sphere());
+            return plus_scaled(crowd_.at[crowd_.inboard(i)], crowd_.length[i], draws.on_sphere());
         Vec3 start;
         for (int axis = 0; axis < 3; ++axis) {
             Range const range = crowd_.range(chain, axis);

@@ -73,7 +73,12 @@ class Pairs {
 /// State of a relaxation: positions, neighbour list and displacements.
 class Relaxation {
   public:
-    explicit Relaxation(Crowd& crowd) : crowd_(crowd), images_(crowd.box) { relist(); }
+    explicit Relaxation(Crowd& crowd) : crowd_(crowd), images_(crowd.box), parent_(crowd.parent) {
+        for (std::size_t c = 0; c < crowd.chains() && !parent_.empty(); ++c)
+            for (std::size_t i = crowd.first[c] + 1; i < crowd.first[c + 1]; ++i)
+                parent_[i] -= static_cast<std::int64_t>(crowd.first[c]);
+        relist();
+    }
 
     /// Counts the overlaps and computes the displacements that reduce them. Rebuilds the neighbour
     /// list if needed.
@@ -112,13 +117,14 @@ class Relaxation {
         }
         for (std::size_t c = 0; c < crowd_.chains(); ++c) {
             std::size_t const begin = crowd_.first[c], beads = crowd_.first[c + 1] - begin;
+            std::span const all(parent_);
             links_.project({std::span(crowd_.at).subspan(begin, beads),
                             std::span(crowd_.length).subspan(begin, beads),
                             {},
                             {},
                             {},
                             0,
-                            crowd_.parent});
+                            all.empty() ? all : all.subspan(begin, beads)});
         }
     }
 
@@ -156,6 +162,8 @@ class Relaxation {
 
     Crowd& crowd_;
     Images images_;
+    /// As Crowd::parent, but counted from the first bead of each chain.
+    std::vector<std::int64_t> parent_;
     Pairs pairs_;
     LinkProjection links_;
     std::vector<Vec3> listed_, push_;

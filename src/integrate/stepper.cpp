@@ -67,10 +67,10 @@ class JointStepper final : public Stepper {
         c.integers["corrections_of_tips"] = corrections_;
         integrator_->save(c);
     }
-    void save(ChainSystem::OwnState& own) const override {
+    void save(OwnState& own) const override {
         if (!integrator_->carries_rates()) return;
         for (JointDynamics const* const group : system_.joint())
-            system_.add_rates(group->group(), group->saved_rates(), own);
+            CheckpointParts(system_).add_rates(group->group(), group->rates(RatesOf::saved), own);
     }
     void branch(Checkpoint const& c) override {
         origin_ = number_in(c, array_of_origin, 0);
@@ -81,7 +81,7 @@ class JointStepper final : public Stepper {
         branch(c);
         corrections_ = counter_of(c, "corrections_of_tips", 0, most_corrections);
         if (integrator_->carries_rates()) {
-            std::vector<JointRates> const rates = system_.own_rates(c.arrays);
+            std::vector<JointRates> const rates = CheckpointParts(system_).own_rates(c.arrays);
             std::vector<JointDynamics*> const groups = system_.joint();
             for (std::size_t g = 0; g < groups.size(); ++g) groups[g]->save_rates(rates[g]);
         }

@@ -62,7 +62,7 @@ class Stepper {
     /// Saves what a restart needs besides the system's state.
     virtual void save(Checkpoint&) const = 0;
     /// Adds the accelerations that are carried from step to step besides the system's own state.
-    virtual void save(ChainSystem::OwnState&) const {}
+    virtual void save(OwnState&) const {}
     /// Restores what save() saved, after the system's state was set. Throws InputError. Collective.
     virtual void restore(Checkpoint const&) = 0;
     /// Returns the number of sweeps per step, for the summary.

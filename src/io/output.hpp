@@ -35,6 +35,8 @@ struct Topology {
         /// Site on which each site hangs, counted from 0 within the chain, -1 for the first; empty
         /// for an unbranched chain.
         std::vector<std::int64_t> parent = {};
+        /// Ends of cross-links, counted from 0 within the chain.
+        std::vector<std::array<std::int64_t, 2>> crosslinks = {};
     };
     std::string title;
     std::vector<Chain> chains;

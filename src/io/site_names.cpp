@@ -143,6 +143,7 @@ std::vector<SiteNames::Bond> SiteNames::bonds() const {
         if (of.parent.empty()) add_bonds(begin, end, bonds);
         for (std::size_t k = 1; k < of.parent.size(); ++k)
             bonds.emplace_back(of.first + of.parent[k], of.first + static_cast<std::int64_t>(k));
+        for (auto const& [a, b] : of.crosslinks) bonds.emplace_back(of.first + a, of.first + b);
         if (of.ring && of.count > 2) bonds.emplace_back(of.first + of.count - 1, of.first);
     }
     return bonds;

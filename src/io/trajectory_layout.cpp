@@ -52,7 +52,7 @@ class Builder {
         std::vector<std::int64_t> id(contents_.sites);
         std::iota(id.begin(), id.end(), 1);
         put_array(at(sites), "id", id);
-        if (is_branched()) add_connectivity(sites);
+        if (is_branched() || is_cross_linked()) add_connectivity(sites);
         add_own_group();
         return std::move(series_);
     }
@@ -87,6 +87,7 @@ class Builder {
         describe_chains(at(own));
         if (!topology_.members.empty()) describe_members(at(own));
         if (is_branched()) describe_branches(at(own));
+        if (is_cross_linked()) describe_crosslinks(at(own));
         if (contents_.bodies > 0) {
             Group const element = add_element(at(own), "orientation", {contents_.bodies, 4}, "",
                                               series_.orientation, "w x y z, body axes to W");
@@ -155,6 +156,11 @@ class Builder {
                            [](Topology::Chain const& chain) { return !chain.parent.empty(); });
     }
 
+    bool is_cross_linked() const {
+        return std::any_of(topology_.chains.begin(), topology_.chains.end(),
+                           [](Topology::Chain const& chain) { return !chain.crosslinks.empty(); });
+    }
+
     /// Writes /connectivity/bonds of H5MD.
     void add_connectivity(Group const& sites) {
         std::vector<std::int64_t> ids;
@@ -175,6 +181,15 @@ class Builder {
                 parent.push_back(chain.parent.empty() ? k - 1
                                                       : chain.parent[static_cast<std::size_t>(k)]);
         put_array(own, "parent", parent);
+    }
+
+    /// Writes /catena/crosslinks.
+    void describe_crosslinks(Place const& own) {
+        std::vector<std::int64_t> sites;
+        for (Topology::Chain const& chain : topology_.chains)
+            for (auto const& [a, b] : chain.crosslinks)
+                sites.insert(sites.end(), {chain.first + a, chain.first + b});
+        put_array(own, "crosslinks", sites);
     }
 
     /// Writes /catena/members.

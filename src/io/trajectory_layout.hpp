@@ -8,7 +8,8 @@
 //       box                       dimension, boundary; edges if periodic
 //       position, velocity        [frames][sites][3], ground axes, unwrapped
 //       mass, id                  [sites], id from 1
-//   /connectivity/bonds           [bonds][2], if a chain is branched: ids of the bonded sites
+//   /connectivity/bonds           [bonds][2], if a chain is branched or cross-linked: ids of the
+//                                 bonded sites
 //   /catena                       format_version, title, length_unit: texts of fixed length
 //       chains                    first, count, beads, ring, name: [chains]; with replicas
 //                                 replica, from 1
@@ -17,6 +18,7 @@
 //                                 place along the member from 0, its residue number in the file
 //       parent                    [sites], if a chain is branched: number of the site on which each
 //                                 hangs, from 0 within its chain; -1 for the chain's first
+//       crosslinks                if there are any: their sites in pairs, from 0
 //       orientation               [frames][bodies][4]: w x y z, body axes to ground axes;
 //                                 site [bodies] from 0: the body's site or its first bead's
 //       body_position, body_velocity, angular_velocity

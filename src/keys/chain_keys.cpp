@@ -53,6 +53,10 @@ constexpr Key chain_keys[] = {
      "base: fixed"},
     {"tip", "`free`, `fixed`, `ring`, or a map", "`free`", "",
      "The last body is free, or joined to the ground or to the first body.", "tip: fixed"},
+    {"crosslinks", "list of lists", "none", "length",
+     "Rigid links join these pairs of point beads, counted from 1, with the length that follows, "
+     "else with their distance at the start.",
+     "crosslinks: [[3, 9], [1, 12, 0.5]]"},
     {"anchor", "3 numbers", "`[0, 0, 0]`", "length",
      "The first link of a chain on a fixed base begins at this point of the ground.",
      "anchor: [0, 0, 10]"},

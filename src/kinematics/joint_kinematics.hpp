@@ -84,17 +84,14 @@ class JointKinematics {
           communicator_(communicator),
           first_body_(first_bodies(group)),
           slot_of_body_(run_slots(group)),
+          model_(space.model(group)),
+          bodies_(model_.view()),
           joint_(group.joint),
-          is_first_(group.is_first),
-          is_last_(group.is_last),
           piece_(first_body_),
           drive_(group.drives),
-          r1_(group.r1),
-          axes1_(group.axes1),
           joint_rotation_(group.joint_rotation),
           joint_translation_(group.joint_translation),
           first_axis_(group.first_axis),
-          screw_(group.screw),
           tree_(group.schedule.runs, group.schedule.levels, group.schedule.roots,
                 group.schedule.slots),
           top_(no_runs_, group.schedule.top_levels, group.schedule.top_roots, group.schedule.slots),
@@ -118,21 +115,24 @@ class JointKinematics {
     JointsView joints() const {
         return {group_.size,
                 joint_.data(),
-                is_first_.data(),
-                is_last_.data(),
+                bodies_.is_first,
+                bodies_.is_last,
                 group_.planar,
                 group_.has_screws,
-                r1_.view(),
-                axes1_.view(),
+                bodies_.r1,
+                bodies_.axes1,
                 joint_rotation_.view(),
                 joint_translation_.view(),
                 first_axis_.view(),
-                screw_.view(),
+                bodies_.screw,
                 piece_.data(),
                 std::ssize(first_body_),
                 drive_.data(),
                 std::ssize(group_.drives)};
     }
+    /// Constant properties of the bodies, shared with the solver of the same Space.
+    typename Space::Model const& model() const { return model_; }
+    GroupView const& bodies() const { return bodies_; }
     /// Rotation of each body relative to its inboard body, as a scan leaves it
     /// (JointScan::rotation).
     ConstView<4> rotations() { return rotation_.view(); }
@@ -251,15 +251,13 @@ class JointKinematics {
     Communicator const& communicator_;
     std::vector<std::int64_t> first_body_;
     std::vector<std::int32_t> slot_of_body_;
+    typename Space::Model model_;
+    GroupView bodies_;
     typename Space::template List<JointType> joint_;
-    typename Space::template List<std::uint8_t> is_first_, is_last_;
     typename Space::template List<std::int64_t> piece_;
     typename Space::template List<LocalDrive> drive_;
-    typename Space::template Fixed<3> r1_;
-    typename Space::template Fixed<6> axes1_;
     typename Space::template Fixed<4> joint_rotation_;
     typename Space::template Fixed<3> joint_translation_, first_axis_;
-    typename Space::template Fixed<4> screw_;
     std::vector<dca::Run> no_runs_;
     /// tree_ holds this rank's units; top_ holds the tree above the units of chains that ranks
     /// share.

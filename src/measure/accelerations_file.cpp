@@ -68,6 +68,15 @@ std::string fields(std::span<double const> numbers) {
     return text;
 }
 
+/// Calls action(chain, link, tension) for every cross-link.
+template <class Action>
+void for_each_crosslink(Scene const& scene, Solution const& s, Action const& action) {
+    std::size_t next = 0;
+    for (ChainSpec const& chain : scene.chains)
+        for (CrossLink const& link : chain.crosslinks)
+            action(chain, link, s.crosslink_tension[next++]);
+}
+
 void write_csv(std::string const& file, Scene const& scene, Solution const& s) {
     AtomicFile out(file);
     std::string header = "chain,body,joint";
@@ -83,6 +92,10 @@ void write_csv(std::string const& file, Scene const& scene, Solution const& s) {
         out.write(fmt::format("{},tip,{}{}{}\n", field(chain.name), name_of(chain.tip_joint.type),
                               fields({}), fields({tip.wrench.data, most_numbers})));
     }
+    for_each_crosslink(scene, s, [&](ChainSpec const& chain, CrossLink const& link, double pull) {
+        out.write(fmt::format("{},{}-{},crosslink{}{}\n", field(chain.name), link.inboard + 1,
+                              link.outboard + 1, fields({}), fields({&pull, 1})));
+    });
     out.publish();
 }
 
@@ -136,6 +149,11 @@ void add_solution(Json& json, Scene const& scene, Solution const& s) {
     json["bead_forces"] = vectors_json(s.bead_force);
     json["joint_forces"] = std::move(forces);
     json["tip_forces"] = std::move(tips);
+    for_each_crosslink(scene, s, [&](ChainSpec const& chain, CrossLink const& link, double pull) {
+        json["crosslink_tensions"].push_back({{"chain", chain.name},
+                                              {"beads", {link.inboard + 1, link.outboard + 1}},
+                                              {"tension", pull}});
+    });
 }
 
 void require_accelerations_writer(std::string const& file) {

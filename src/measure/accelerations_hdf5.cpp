@@ -35,6 +35,10 @@ void write(std::string const& draft, std::string const& file, Solution const& s)
     std::array<hsize_t, 2> const of_tips{s.tip_force.size(), 6};
     Dataset tips = put_array(root, "tip_forces", H5T_NATIVE_DOUBLE, wrenches.data(), of_tips);
     Dataset tip_chains = put_array(root, "tip_chains", chains);
+    if (!s.crosslink_tension.empty()) {
+        Dataset tensions = put_array(root, "crosslink_tensions", s.crosslink_tension);
+        check(tensions.close(), file, writing);
+    }
     for (Dataset* const data : {&accelerations, &forces, &starts, &tips, &tip_chains})
         check(data->close(), file, writing);
     flush_to_disk(handle, file, writing);

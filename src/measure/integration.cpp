@@ -44,7 +44,7 @@ void Trajectory::run(std::int64_t steps) {
     system_.wait();
 }
 
-ChainSystem::Snapshot Trajectory::snapshot() {
+SceneMotion Trajectory::snapshot() {
     stepper_->observe({});
     return system_.snapshot();
 }

@@ -24,7 +24,7 @@ class Trajectory {
     /// Advances by `steps` time steps and waits for the result. Collective.
     void run(std::int64_t steps);
     /// Returns the bodies' motion on rank 0. Collective.
-    ChainSystem::Snapshot snapshot();
+    SceneMotion snapshot();
     /// Kinetic and total energy, kJ/mol (`units: si`: J).
     struct Energy {
         double kinetic = 0, total = 0;

@@ -46,7 +46,7 @@ void refuse_before_run(Scene const& scene, Communicator const& communicator) {
     choose_backend(scene, communicator);
     choose_threads(scene, communicator);
     choose_simd_level(scene, communicator);
-    scene::refuse_unsupported_branches(scene, communicator.size());
+    scene::refuse_unsupported_branches(scene);
     if (!scene.dynamics.given) return;
     refuse_refinement(scene);
     Integrator const integrator = scene.dynamics.integrator;

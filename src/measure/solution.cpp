@@ -17,15 +17,13 @@ void append(std::vector<double>& list, Vec3 const& v) {
 
 /// Returns the outboard end of the link on the inboard side of body k, W. `body`: index of body k
 /// in the scene.
-Vec3 link_end(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
-              std::size_t body) {
+Vec3 link_end(ChainSpec const& chain, std::size_t k, SceneMotion const& at, std::size_t body) {
     return chain.is_linked()
                ? at.position[body] + to_matrix(at.orientation[body]) * chain.linked.inboard[k]
                : at.position[body];
 }
 /// Returns the inboard end of that link, W.
-Vec3 link_start(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
-                std::size_t body) {
+Vec3 link_start(ChainSpec const& chain, std::size_t k, SceneMotion const& at, std::size_t body) {
     if (k == 0) return chain.is_linked() ? chain.linked.anchor : chain.beads.anchor;
     std::size_t const before = scene::inboard_of(chain.parent, k), inboard = body - k + before;
     return chain.is_linked() ? at.position[inboard] + to_matrix(at.orientation[inboard]) *
@@ -34,8 +32,8 @@ Vec3 link_start(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot con
 }
 
 /// Returns the tension of link k. The force along the link is -tension towards the outboard bead.
-double tension(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at,
-               std::size_t body, Vector<double, 6> const& wrench) {
+double tension(ChainSpec const& chain, std::size_t k, SceneMotion const& at, std::size_t body,
+               Vector<double, 6> const& wrench) {
     if (k == 0 && chain.base == Base::free) return 0.0;
     Vec3 const link = link_end(chain, k, at, body) - link_start(chain, k, at, body);
     return -dot((1.0 / norm(link)) * link, Vec3{{wrench[3], wrench[4], wrench[5]}});
@@ -53,10 +51,11 @@ int accelerations_of(ChainSpec const& chain, std::size_t k) {
 
 Solution solution_of(ChainSystem& system) {
     ChainSystem::Accelerations const a = system.accelerations();
-    ChainSystem::Snapshot const at = system.snapshot();
+    SceneMotion const at = system.snapshot();
     Solution s;
     s.bead_force = a.bead_force;
     s.tip_force = a.tip_force;
+    s.crosslink_tension = a.crosslink_tension;
     if (system.communicator().rank() != 0) return s;
     std::size_t body = 0;
     for (ChainSpec const& chain : system.scene().chains)

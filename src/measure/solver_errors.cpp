@@ -89,7 +89,7 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
             if (kind == Handles::articulated && !takes_articulated) continue;
-            if (!study.points.empty() && kind != Handles::projected && scene::has_branches(scene))
+            if (!study.points.empty() && kind != Handles::projected && scene::has_paths(scene))
                 continue;
             Scene variant = scene;
             variant.solver.backend = backend;

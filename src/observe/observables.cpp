@@ -31,7 +31,7 @@ double temperature_of(Scene const& scene, std::int64_t dof, double kinetic_energ
     return 2.0 * kinetic_energy / (scene.boltzmann() * static_cast<double>(dof));
 }
 
-void KineticEnergy::add(ChainSystem::Snapshot const& s) {
+void KineticEnergy::add(SceneMotion const& s) {
     for (std::size_t i = 0; i < s.velocity.size(); ++i, ++body_) {
         for (; body_ == scene_->chains[chain_].size(); body_ = 0) ++chain_;
         ChainSpec const& chain = scene_->chains[chain_];
@@ -47,7 +47,7 @@ void KineticEnergy::add(ChainSystem::Snapshot const& s) {
     }
 }
 
-double kinetic_energy(Scene const& scene, ChainSystem::Snapshot const& snapshot) {
+double kinetic_energy(Scene const& scene, SceneMotion const& snapshot) {
     KineticEnergy energy(scene);
     energy.add(snapshot);
     return energy.value();
@@ -163,7 +163,7 @@ void Observables::begin() {
     shapes_.clear();
 }
 
-void Observables::add(ChainSystem::Snapshot const& bodies, std::vector<Vec3> const& positions) {
+void Observables::add(SceneMotion const& bodies, std::vector<Vec3> const& positions) {
     kinetic_.add(bodies);
     for (Vec3 const& position : positions) {
         shape_.add(topology_.mass[site_++], position);

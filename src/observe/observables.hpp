@@ -20,14 +20,14 @@ double temperature_of(Scene const&, std::int64_t dof, double kinetic_energy);
 
 /// Returns the kinetic energy of all bodies, kJ/mol (J with `units: si`). `snapshot` in scene
 /// order.
-double kinetic_energy(Scene const&, ChainSystem::Snapshot const&);
+double kinetic_energy(Scene const&, SceneMotion const&);
 
 /// Kinetic energy of a scene whose bodies are added in parts, in scene order.
 class KineticEnergy {
   public:
     explicit KineticEnergy(Scene const& scene) : scene_(&scene) {}
     /// Adds the next bodies.
-    void add(ChainSystem::Snapshot const&);
+    void add(SceneMotion const&);
     double value() const { return sum_; }
 
   private:
@@ -75,7 +75,7 @@ class Observables {
     /// Begins another row: discards what was added.
     void begin();
     /// Adds the next bodies, and their sites' positions in W.
-    void add(ChainSystem::Snapshot const&, std::vector<Vec3> const& positions);
+    void add(SceneMotion const&, std::vector<Vec3> const& positions);
     /// Returns the kinetic energy of the bodies added so far.
     double kinetic() const { return kinetic_.value(); }
     /// Returns the values of all columns. Precondition: all bodies of the scene have been added.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scene/branches.hpp"
+
 namespace catena {
 
 Sites::Sites(Scene const& scene) : Sites(scene, {{0, scene.bodies()}}, true) {}
@@ -38,7 +40,7 @@ Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, boo
             {chain.name, static_cast<std::int64_t>(first), static_cast<std::int64_t>(count),
              all_beads, chain.is_ring(),
              static_cast<std::int64_t>(topology_.chains.size() / scene.chains_a_replica()),
-             chain.parent});
+             chain.parent, scene::ends_of_crosslinks(chain)});
     }
 }
 
@@ -98,8 +100,7 @@ void Sites::add(ChainSpec const& chain, bool with_topology) {
     }
 }
 
-Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities,
-                  Executor const& executor) const {
+Frame Sites::part(SceneBodies const& bodies, bool velocities, Executor const& executor) const {
     auto const first = static_cast<std::size_t>(bodies.first),
                end = first + bodies.motion.position.size();
     auto const of_body = [&](std::size_t body) {
@@ -113,7 +114,7 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities,
     Frame part;
     part.first_site = begin != sites_.end() ? begin->site : next_site_;
     part.first_body = turning != turning_.end() ? turning->number : next_turning_;
-    ChainSystem::Snapshot const& s = bodies.motion;
+    SceneMotion const& s = bodies.motion;
     auto const count = static_cast<std::size_t>(of_body(end) - begin);
     part.positions.resize(count);
     if (velocities) part.velocities.resize(count);
@@ -135,8 +136,8 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities,
 }
 
 /// `k`: index of the body among `bodies`.
-void Sites::add_state(ChainSystem::Bodies const& bodies, std::size_t k, Frame& part) const {
-    ChainSystem::Snapshot const& s = bodies.motion;
+void Sites::add_state(SceneBodies const& bodies, std::size_t k, Frame& part) const {
+    SceneMotion const& s = bodies.motion;
     part.orientations.push_back(s.orientation[k]);
     if (topology_.body_states) {
         part.body_positions.push_back(s.position[k]);

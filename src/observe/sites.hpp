@@ -20,7 +20,7 @@ class Sites {
 
     Topology const& topology() const { return topology_; }
     /// Returns the sites of the given bodies as part of a frame, without step and time.
-    Frame part(ChainSystem::Bodies const&, bool velocities, Executor const&) const;
+    Frame part(SceneBodies const&, bool velocities, Executor const&) const;
 
   private:
     /// Site of a trajectory.
@@ -38,7 +38,7 @@ class Sites {
     void add(ChainSpec const&, bool with_topology);
     void add_members(Members const& members, std::int64_t first);
     /// Adds orientation and coordinates of the body `k` of `bodies`.
-    void add_state(ChainSystem::Bodies const&, std::size_t k, Frame&) const;
+    void add_state(SceneBodies const&, std::size_t k, Frame&) const;
     /// True if this rank has the next body.
     bool shows_next();
 

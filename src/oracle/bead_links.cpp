@@ -42,6 +42,19 @@ std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain) {
 }
 
 template <class S>
+std::vector<BeadLink<S>> read_crosslinks(ChainSpec const& chain) {
+    BeadArrays const& b = chain.beads;
+    std::vector<BeadLink<S>> links;
+    for (CrossLink const& link : chain.crosslinks) {
+        auto const from = static_cast<std::size_t>(link.inboard),
+                   to = static_cast<std::size_t>(link.outboard);
+        links.push_back(bead_link(lift<S>(b.position[to]) - lift<S>(b.position[from]),
+                                  lift<S>(b.velocity[to]) - lift<S>(b.velocity[from])));
+    }
+    return links;
+}
+
+template <class S>
 V3<S> bead_force(ChainSpec const& chain, Loads const& loads, std::size_t k) {
     V3<S> const weight = S(chain.beads.mass[k]) * lift<S>(loads.gravity) +
                          lift<S>(terms::constant_wrench(chain, k).second);
@@ -54,6 +67,7 @@ V3<S> bead_force(ChainSpec const& chain, Loads const& loads, std::size_t k) {
 #define CATENA_ORACLE(S)                                                    \
     template BeadLink<S> bead_link<S>(V3<S> const&, V3<S> const&);          \
     template std::vector<BeadLink<S>> read_bead_links<S>(ChainSpec const&); \
+    template std::vector<BeadLink<S>> read_crosslinks<S>(ChainSpec const&); \
     template V3<S> bead_force<S>(ChainSpec const&, Loads const&, std::size_t);
 CATENA_ORACLE(double)
 CATENA_ORACLE(long double)

@@ -1,6 +1,7 @@
 #include <string>
 
 #include "error.hpp"
+#include "oracle/full_pivoting.hpp"
 #include "oracle/joint.hpp"
 #include "scene/branches.hpp"
 
@@ -88,6 +89,59 @@ S tip_compliance(ChainSpec const& chain, std::vector<BeadLink<S>> links) {
     return yields;
 }
 
+/// Adds a pair of forces along a cross-link to those on its beads.
+template <class S>
+void push(CrossLink const& link, V3<S> const& force, std::vector<V3<S>>& forces) {
+    V3<S>&to = forces[static_cast<std::size_t>(link.outboard)],
+    &from = forces[static_cast<std::size_t>(link.inboard)];
+    to = to + force, from = from - force;
+}
+
+/// Acceleration of a cross-link's ends along it, towards each other negative.
+template <class S>
+S apart(CrossLink const& link, V3<S> const& along, OracleResult<S> const& r) {
+    return dot(along, r.com_acceleration[static_cast<std::size_t>(link.outboard)] -
+                          r.com_acceleration[static_cast<std::size_t>(link.inboard)]);
+}
+
+/// Solves the chain with its cross-links by their Schur complement.
+template <class S>
+OracleResult<S> with_crosslinks(ChainSpec const& chain, std::vector<BeadLink<S>> const& links,
+                                std::vector<V3<S>> forces) {
+    std::vector<BeadLink<S>> const across = read_crosslinks<S>(chain);
+    auto const count = static_cast<Index>(across.size());
+    std::vector<BeadLink<S>> still = links;
+    for (BeadLink<S>& link : still) link.closure = S(0);
+    Dense<S> matrix(count, count);
+    auto const at = [](Index i) { return static_cast<std::size_t>(i); };
+    for (Index j = 0; j < count; ++j) {
+        std::vector<V3<S>> pair(chain.size(), V3<S>::zero());
+        push(chain.crosslinks[at(j)], across[at(j)].direction, pair);
+        OracleResult<S> const r = open_chain(chain, still, pair);
+        for (Index i = 0; i < count; ++i)
+            matrix(i, j) = apart(chain.crosslinks[at(i)], across[at(i)].direction, r);
+    }
+    FullPivoting<S> const lu(matrix, S(0x1p-33));
+    OracleResult<S> result = open_chain(chain, links, forces);
+    result.crosslink_tension.assign(across.size(), S(0));
+    // The second pass corrects the rounding errors of the first.
+    for (int pass = 0; pass < 2; ++pass) {
+        Column<S> open(count);
+        for (Index i = 0; i < count; ++i)
+            open[i] = across[at(i)].closure -
+                      apart(chain.crosslinks[at(i)], across[at(i)].direction, result);
+        Column<S> const force = lu.solve(open);
+        std::vector<S> tension = result.crosslink_tension;
+        for (Index i = 0; i < count; ++i) {
+            tension[at(i)] -= force[i];
+            push(chain.crosslinks[at(i)], S(force[i]) * across[at(i)].direction, forces);
+        }
+        result = open_chain(chain, links, forces);
+        result.crosslink_tension = std::move(tension);
+    }
+    return result;
+}
+
 }  // namespace
 
 template <class S>
@@ -97,6 +151,7 @@ OracleResult<S> aba_beads(ChainSpec const& chain, Loads const& loads) {
         links[k].closure += S(loads.link_gaps[k]);
     std::vector<V3<S>> forces;
     for (std::size_t k = 0; k < chain.size(); ++k) forces.push_back(bead_force<S>(chain, loads, k));
+    if (chain.is_cross_linked()) return with_crosslinks(chain, links, forces);
     OracleResult<S> result = open_chain(chain, links, forces);
     if (chain.tip != Tip::jointed) return result;
     V3<S> const u = links.back().direction, applied = forces.back(), on_first = forces.front();

@@ -57,13 +57,20 @@ Dense<S> joint_space_inertia(ChainSpec const& chain, Loads const& loads) {
 /// Returns G M^-1 G^T of a chain of beads, where G has the gradients of the link lengths.
 template <class S>
 Dense<S> bead_link_matrix(ChainSpec const& chain) {
-    std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
-    std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
+    std::vector<BeadLink<S>> links = read_bead_links<S>(chain);
+    std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1,
+                      in_row = links.size();
+    std::vector<BeadLink<S>> const crosslinks = read_crosslinks<S>(chain);
+    links.insert(links.end(), crosslinks.begin(), crosslinks.end());
     auto const count = static_cast<Index>(links.size() - first);
     Dense<S> t = Dense<S>::Zero(count, count);
     /// Links at each bead; the sign is 1 at the outboard end of the link.
     std::vector<std::vector<std::pair<std::size_t, int>>> at(n);
-    for (std::size_t k = first; k < links.size(); ++k) {
+    for (std::size_t c = 0; c < crosslinks.size(); ++c) {
+        at[static_cast<std::size_t>(chain.crosslinks[c].inboard)].emplace_back(in_row + c, -1);
+        at[static_cast<std::size_t>(chain.crosslinks[c].outboard)].emplace_back(in_row + c, 1);
+    }
+    for (std::size_t k = first; k < in_row; ++k) {
         if (k > 0) at[k == n ? n - 1 : scene::inboard_of(chain.parent, k)].emplace_back(k, -1);
         if (k < n) at[k].emplace_back(k, 1);
     }

@@ -12,7 +12,9 @@ OracleResult<S> dense_beads(ChainSpec const& chain, Loads const& loads) {
     std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
     auto const n = static_cast<Index>(chain.size()), count = static_cast<Index>(links.size());
     Index const first = chain.base == Base::fixed ? 0 : 1;
-    System<S> s(3 * n + count - first);
+    std::vector<BeadLink<S>> const crosslinks = read_crosslinks<S>(chain);
+    Index const across = 3 * n + count - first;
+    System<S> s(across + static_cast<Index>(crosslinks.size()));
     for (Index k = 0; k < n; ++k) {
         auto const at = static_cast<std::size_t>(k);
         s.add(3 * k, 3 * k, scaled(S(chain.beads.mass[at]), M3<S>::identity()));
@@ -31,8 +33,15 @@ OracleResult<S> dense_beads(ChainSpec const& chain, Loads const& loads) {
         if (k > 0) s.add_constraint(3 * inboard, row, S(-1), link.direction);
         if (k == n && chain.is_ring()) s.add_constraint(0, row, S(1), link.direction);
     }
+    for (std::size_t c = 0; c < crosslinks.size(); ++c) {
+        Index const row = across + static_cast<Index>(c);
+        s.right[row] = crosslinks[c].closure;
+        s.add_constraint(3 * chain.crosslinks[c].outboard, row, S(1), crosslinks[c].direction);
+        s.add_constraint(3 * chain.crosslinks[c].inboard, row, S(-1), crosslinks[c].direction);
+    }
     Column<S> const x = solve(s);
     OracleResult<S> result;
+    for (Index row = across; row < x.size(); ++row) result.crosslink_tension.push_back(-x[row]);
     for (Index k = 0; k < n; ++k) {
         result.com_acceleration.push_back(segment(x, 3 * k));
         result.tension.push_back(k < first ? S(0) : S(-x[3 * n + k - first]));

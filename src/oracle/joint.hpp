@@ -176,6 +176,9 @@ struct BeadLink {
 /// of a free base is zero.
 template <class S>
 std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain);
+/// Reads the cross-links of a chain of beads.
+template <class S>
+std::vector<BeadLink<S>> read_crosslinks(ChainSpec const& chain);
 /// Returns the ground point of a tip link. Throws ComputationError if the tip is another joint.
 Vec3 tip_anchor(ChainSpec const& chain);
 /// Returns the link with vector `along`, given the velocity of its outboard end relative to its

@@ -64,6 +64,8 @@ struct OracleResult {
     /// Beads and linked bodies: tension of the inboard link, positive if it pulls its two ends
     /// together. Entry 0 of a free base is zero.
     std::vector<Scalar> tension;
+    /// Tension of each cross-link.
+    std::vector<Scalar> crosslink_tension;
     /// Jointed tip: wrench of the tip joint on the last body, W. The torque is about the origin of
     /// the tip's joint frame, which is fixed in the last body. Tip link: its force on the last
     /// bead, or on the last body's `outboard` point.

@@ -85,9 +85,16 @@ void add_link_rows(Directions const& links, std::size_t first, ChainSpec const& 
 void project_beads(ChainSpec& chain) {
     std::vector<BeadLink<double>> const links = read_bead_links<double>(chain);
     std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
-    Dense<double> jacobian =
-        Dense<double>::Zero(static_cast<Index>(links.size()), static_cast<Index>(3 * n));
+    std::vector<BeadLink<double>> const crosslinks = read_crosslinks<double>(chain);
+    Dense<double> jacobian = Dense<double>::Zero(
+        static_cast<Index>(links.size() + crosslinks.size()), static_cast<Index>(3 * n));
     Column<double> velocity(static_cast<Index>(3 * n));
+    for (std::size_t c = 0; c < crosslinks.size(); ++c)
+        for (int i = 0; i < 3; ++i) {
+            auto const row = static_cast<Index>(links.size() + c);
+            jacobian(row, 3 * chain.crosslinks[c].outboard + i) = crosslinks[c].direction[i];
+            jacobian(row, 3 * chain.crosslinks[c].inboard + i) = -crosslinks[c].direction[i];
+        }
     add_link_rows(links, first, chain,
                   [&](std::size_t link, std::size_t k, std::size_t, double sign) {
                       for (int i = 0; i < 3; ++i)

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "generate/conformation.hpp"
 #include "place/region.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
@@ -11,9 +12,9 @@
 namespace catena::scene {
 
 /// Permission to replace the shape of a movable chain, to find a place for it. `yes`: a free chain
-/// of residues that is self-avoiding, or one of several copies without a given shape. `if_asked`:
-/// other free chains of residues, which may be regrown only if the scene asks for self-avoidance.
-/// `no`: all other chains.
+/// of residues or nucleotides that is self-avoiding, or one of several copies without a given
+/// shape. `if_asked`: other free chains of residues, which may be regrown only if the scene asks
+/// for self-avoidance. `no`: all other chains.
 enum class Regrowth : std::uint8_t { no, if_asked, yes };
 
 /// A chain of the scene before it has a place.
@@ -32,6 +33,9 @@ struct Draft {
     double bytes = 0;
     /// Region in which `place` puts the chain; none without `place`.
     std::optional<Region> region = std::nullopt;
+    /// Distance that beads without a common link keep in packings, nm. The largest of all chains
+    /// that grow in a box holds for all of them.
+    double excluded = excluded_distance;
 };
 
 }  // namespace catena::scene

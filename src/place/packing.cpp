@@ -14,6 +14,7 @@
 #include "generate/crowd.hpp"
 #include "generate/outline.hpp"
 #include "generate/random.hpp"
+#include "scene/branches.hpp"
 
 namespace catena::scene {
 
@@ -39,13 +40,13 @@ std::string text_of(Vec3 const& box) {
 }
 
 /// Volume of spheres with the excluded distance as diameter, for the beads of some chains. Link
-/// neighbours overlap in a lens; half of it is subtracted for each of the two.
+/// neighbours that are nearer overlap in a lens; half of it is subtracted for each of the two.
 double volume_of(Crowd const& crowd, std::size_t first_chain, std::size_t end_chain) {
     double const d = crowd.excluded;
     double volume = 0;
     for (std::size_t i = crowd.first[first_chain]; i < crowd.first[end_chain]; ++i) {
         volume += Draws::pi / 6 * d * d * d;
-        if (double const l = crowd.length[i]; l > 0)
+        if (double const l = crowd.length[i]; l > 0 && l < d)
             volume -= Draws::pi / 12 * (2 * d + l) * (d - l) * (d - l);
     }
     return volume;
@@ -172,17 +173,34 @@ void refuse_full_regions(std::vector<Share> const& shares, Crowd const& crowd) {
          fmt::format("enlarge {} or lower `count`", name));
 }
 
+/// Sets Crowd::parent if one of the chains to grow branches.
+void hang_branches(std::vector<Draft> const& drafts, Crowd& crowd) {
+    auto const grows_branches = [](Draft const& draft) {
+        return draft.regrown == Regrowth::yes && draft.chain.is_branched();
+    };
+    if (std::none_of(drafts.begin(), drafts.end(), grows_branches)) return;
+    crowd.parent.assign(crowd.at.size(), -1);
+    std::size_t first = 0;
+    for (Draft const& draft : drafts) {
+        if (draft.regrown != Regrowth::yes) continue;
+        for (std::size_t k = 1; k < draft.chain.size(); ++k)
+            crowd.parent[first + k] =
+                static_cast<std::int64_t>(first + inboard_of(draft.chain.parent, k));
+        first += draft.chain.size();
+    }
+}
+
 /// Collects the chains to grow, then the points of all other chains as fixed points.
 Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
     Crowd crowd;
     crowd.box = box;
-    crowd.excluded = excluded_distance;
     crowd.first.push_back(0);
     bool const is_walled = std::any_of(drafts.begin(), drafts.end(), [](Draft const& draft) {
         return draft.region && draft.region->has_walls();
     });
     for (Draft const& draft : drafts) {
         if (draft.regrown != Regrowth::yes) continue;
+        crowd.excluded = std::max(crowd.excluded, draft.excluded);
         BeadArrays const& beads = draft.chain.beads;
         crowd.at.insert(crowd.at.end(), beads.position.begin(), beads.position.end());
         crowd.length.insert(crowd.length.end(), beads.length.begin(), beads.length.end());
@@ -197,6 +215,7 @@ Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
         crowd.at.insert(crowd.at.end(), points.begin(), points.end());
     }
     crowd.length.resize(crowd.at.size(), 0.0);
+    hang_branches(drafts, crowd);
     return crowd;
 }
 

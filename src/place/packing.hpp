@@ -9,8 +9,8 @@
 namespace catena::scene {
 
 /// Grows all drafts with Regrowth::yes anew in the box, among each other and around all others.
-/// Relaxes them until no two beads, other than link neighbours, are closer than the excluded
-/// distance of self-avoiding chains. Periodic images count, positions are not wrapped, and links
+/// Relaxes them until no two beads, other than link neighbours, are closer than the largest
+/// Draft::excluded of these drafts. Periodic images count, positions are not wrapped, and links
 /// are exact to rounding. Beads of drafts with a region keep within its walls. The result depends
 /// on drafts, box and seed alone. Throws InputError if the beads' volume, an edge of the box or a
 /// region rules it out, or the relaxation fails. `name` is the box's name in messages.

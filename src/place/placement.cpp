@@ -92,7 +92,7 @@ struct Lattice {
          std::string("enlarge ") + in.name +
              (residues ? ", lower `count` or write `conformation: self_avoiding` (without "
                          "`positions`), which is packed more densely"
-                       : " or lower `count`; only free, unbranched chains of a `sequence` or "
+                       : " or lower `count`; only free chains of a `sequence` or "
                          "`fasta` without `positions` are packed more densely"));
 }
 

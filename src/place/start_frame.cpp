@@ -10,6 +10,7 @@
 #include "frames/chosen_frame.hpp"
 #include "generate/cells.hpp"
 #include "generate/conformation.hpp"
+#include "generate/crosslinks.hpp"
 #include "generate/start_fit.hpp"
 #include "generate/superposition.hpp"
 #include "io/printable.hpp"
@@ -174,6 +175,11 @@ class FrameStart {
                      fmt::format("chain {}, `{}`, branches otherwise in `{}` than in the scene",
                                  c + 1, shown(chain.name), frame_.file),
                      "give a trajectory of the same chains");
+            if (other.crosslinks != ends_of_crosslinks(chain))
+                fail(from,
+                     fmt::format("chain {}, `{}`, has other cross-links in `{}` than in the scene",
+                                 c + 1, shown(chain.name), frame_.file),
+                     "give a trajectory of the same chains");
             if (other.name != chain.name && renamed_++ == 0)
                 first_renamed_ = fmt::format("`{}` for the scene's `{}`",
                                              shown(printable(other.name)), shown(chain.name));
@@ -239,6 +245,7 @@ class FrameStart {
         fit.fit(at);
         if (chain.is_beads()) {
             chain.beads.position = beads.arrays.position;
+            if (chain.is_cross_linked()) fit_crosslinks(chain, {scene_, *fields_.find("from")});
             return;
         }
         LinkedArrays& linked = chain.linked;

@@ -42,7 +42,8 @@ Table chain_table(Scene const& scene) {
             count == 1 ? scene.name_in_file(i)
                        : scene.name_in_file(i) + " .. " + scene.name_in_file(i + count - 1);
         table.add({name, std::to_string(count), std::to_string(first.size()),
-                   std::string(first.is_branched() ? "branched " : "") + scene::contents_of(first),
+                   std::string(first.is_branched() ? "branched " : "") +
+                       (first.is_cross_linked() ? "cross-linked " : "") + scene::contents_of(first),
                    base_name(first), scene::tip_name(first), kind_name(first)});
     }
     return table;
@@ -59,6 +60,9 @@ Json chains_json(Scene const& scene) {
         if (chain.is_branched())
             list.back()["branches"] = {{"ends", scene::ends_of(chain)},
                                        {"height", scene::height_of(chain)}};
+        if (chain.is_cross_linked())
+            list.back()["crosslinks"] = {{"count", chain.crosslinks.size()},
+                                         {"redundant_links", chain.redundant_links}};
     }
     return list;
 }

@@ -8,6 +8,7 @@
 #include "math/with_number.hpp"
 #include "plan/describe.hpp"
 #include "scene/branch_limits.hpp"
+#include "scene/branches.hpp"
 #include "scene/freedom.hpp"
 #include "terms/force_terms.hpp"
 #include "tree/branches.hpp"
@@ -100,7 +101,10 @@ double numbers_of(DynamicsSpec const& dynamics, bool stands) {
 /// Returns the bytes of a branched chain's solver: segments and joints, beads with side paths, and
 /// the numbers and lists of its paths.
 double bytes_of_branches(ChainSpec const& chain, bool pairwise, SolverSizes const& size) {
-    dca::Branches const branches(chain.parent, pairwise);
+    std::vector<std::int64_t> inboard(chain.size(), -1);
+    for (std::size_t k = 1; k < inboard.size(); ++k)
+        inboard[k] = static_cast<std::int64_t>(scene::inboard_of(chain.parent, k));
+    dca::Branches const branches(inboard, pairwise);
     double constexpr of_place = 2 * sizeof(std::int64_t) + sizeof(std::int32_t) + 2,
                      of_fork = sizeof(Sym3) + 2 * sizeof(Vec3) + sizeof(dca::Fork),
                      of_path = sizeof(dca::Run) + sizeof(dca::Root) + sizeof(Vec3);
@@ -108,6 +112,13 @@ double bytes_of_branches(ChainSpec const& chain, bool pairwise, SolverSizes cons
            static_cast<double>(branches.joints) * (size.joint + of_place) +
            static_cast<double>(branches.forks.size()) * of_fork +
            static_cast<double>(branches.paths()) * of_path;
+}
+
+/// Returns the bytes that cross-links add: two vectors per bead, and two matrices.
+double bytes_of_crosslinks(ChainSpec const& chain) {
+    if (!chain.is_cross_linked()) return 0;
+    auto const count = static_cast<double>(chain.crosslinks.size());
+    return sizeof(double) * (6 * static_cast<double>(chain.size()) + 2 * count * count);
 }
 
 /// Returns the bytes of a chain's scene data, which every rank holds.
@@ -156,8 +167,9 @@ Memory memory_of(Scene const& scene, int ranks) {
             chain.is_beads() ? bead_numbers : body_numbers + numbers_of(scene.dynamics, stands);
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
-        if (scene::branches(chain)) {
-            m.solver += bytes_of_branches(chain, pairwise, size);
+        if (scene::goes_by_paths(chain)) {
+            m.solver +=
+                (bytes_of_branches(chain, pairwise, size) + bytes_of_crosslinks(chain)) / ranks;
             continue;
         }
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;

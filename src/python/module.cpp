@@ -2,6 +2,7 @@
 #include "bindings.hpp"
 #include "catena/errors.hpp"
 #include "catena/version.hpp"
+#include "force/openmm_force.hpp"
 
 namespace nb = nanobind;
 
@@ -31,10 +32,13 @@ void add_errors() {
 NB_MODULE(_core, module) {
     module.doc() = "Catena's solver and simulations in C++; use the package catena.";
     module.attr("version") = catena::version().c_str();
-    module.attr("has_openmm") = CATENA_PYTHON_OPENMM != 0;
+    module.attr("has_openmm") = catena::openmm_version() != "none";
     catena::python::add_errors();
     catena::python::add_model(module);
     catena::python::add_solution(module);
     catena::python::add_simulation(module);
+    catena::python::add_topology(module);
     catena::python::add_analysis(module);
+    catena::python::add_analyse(module);
+    catena::python::add_keys(module);
 }

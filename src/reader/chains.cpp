@@ -11,8 +11,10 @@
 #include <optional>
 
 #include "bodies/bodies.hpp"
+#include "bodies/crosslinks.hpp"
 #include "bodies/hdf5_bodies.hpp"
 #include "generate/conformation.hpp"
+#include "generate/crosslinks.hpp"
 #include "generate/start_fit.hpp"
 #include "io/memory_limit.hpp"
 #include "io/printable.hpp"
@@ -170,6 +172,10 @@ class ChainReader {
         check_residue_keys(request_);
         request_.particle = particle_of(count_ == 1 ? name : name + "-1", next_particle(drafts));
         std::vector<StructurePart> const parts = read_structure(request_, source_);
+        if (Node const* const crosslinks = request_.fields.find("crosslinks");
+            crosslinks && parts.size() > 1)
+            fail(*crosslinks, fmt::format("cross-links of {} chains of a structure", parts.size()),
+                 "name one of them by `chain`, in an entry of its own");
         for (StructurePart const& part : parts) {
             request_.part = &part;
             append_copies(part.name, drafts);
@@ -212,6 +218,7 @@ class ChainReader {
         std::size_t const at = drafts.size();
         first.name = count_ == 1 ? name : name + "-1";
         drafts.push_back({std::move(first), &request_.node, free_to_move, shape, first_particle});
+        if (is_rna(request_)) drafts.back().excluded = excluded_of_nucleotides;
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
@@ -222,6 +229,7 @@ class ChainReader {
                                                             beads, drafts[at].chain.parent));
             drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move,
                               shape, request_.particle});
+            drafts.back().excluded = drafts[at].excluded;
             drafts.back().chain.name = copy_name;
         }
         drafts.back().bytes = bytes;
@@ -316,10 +324,28 @@ class ChainReader {
         // No bead of a branched chain is known to be the end of a protein.
         if (chain.is_branched()) request_.protein_ends = {false, false};
         join_tip(chain, tip_, request_);
+        cross_link(chain, copy);
         if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);
         note_lost_rates(chain, request_);
         return chain;
+    }
+
+    /// Adds the entry's cross-links. Where the System joins two beads its length counts, unless the
+    /// entry gives one or has `links: as_given`.
+    void cross_link(ChainSpec& chain, std::int64_t copy) const {
+        Node const* const node = request_.fields.find("crosslinks");
+        if (!node) return;
+        chain.crosslinks = read_crosslinks(*node, chain);
+        if (chain.name.empty()) chain.name = request_.name();
+        for (CrossLink& link : chain.crosslinks)
+            if (link.length == 0 && request_.system && !request_.links_as_given())
+                if (double const length = request_.system->length(
+                        request_.particle + link.inboard, request_.particle + link.outboard);
+                    length > 0)
+                    link.length = length;
+        bool const far = source_.key != "bodies" && !is_given();
+        fit_crosslinks(chain, {request_.scene, *node, far, copy > 0});
     }
 
     /// Sets the kind of start velocities and clears the given ones if they are not used. `given` is
@@ -364,8 +390,7 @@ class ChainReader {
     }
     /// Permission to regrow the chain, see Regrowth.
     Regrowth regrown(ChainSpec const& chain) const {
-        // Packing grows each bead beside the one before.
-        if (!is_free(chain) || chain.is_branched() ||
+        if (!is_free(chain) || chain.is_cross_linked() ||
             (source_.key != "sequence" && source_.key != "fasta"))
             return Regrowth::no;
         Node const* const conformation = request_.fields.find("conformation");

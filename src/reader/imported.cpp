@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "generate/conformation.hpp"
+#include "generate/crosslinks.hpp"
 #include "generate/start_fit.hpp"
 #include "reader/force_notes.hpp"
 #include "scene/fields.hpp"
@@ -48,6 +49,7 @@ Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fi
                             inboard_of(parent, static_cast<std::size_t>(k)) + 1),
                 "move one of them in the topology");
     fit.fit(chain);
+    draft.chain.crosslinks = std::move(from.crosslinks);
     return draft;
 }
 
@@ -103,6 +105,9 @@ std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
     for (ImportedChain& chain : imported.chains)
         drafts.push_back(draft_of(std::move(chain), openmm, warm, fit));
     fit.note();
+    for (Draft& draft : drafts)
+        if (draft.chain.is_cross_linked())
+            fit_crosslinks(draft.chain, {scene, *openmm.find("topology")});
     return drafts;
 }
 

@@ -16,10 +16,6 @@ namespace catena::scene {
 
 namespace {
 
-/// Distance that the beads of a self-avoiding start keep, nm. The model's beads are 0.62 to 0.70 nm
-/// wide.
-double constexpr excluded_of_nucleotides = 0.6;
-
 void check_keys(ChainRequest& request) {
     if (Node const* const rigid = request.fields.find("rigid"))
         fail(*rigid, "rigid domains in a chain of nucleotides, whose model is of disordered RNA",

@@ -17,6 +17,10 @@ void check_residue_keys(ChainRequest& request);
 /// request's rigid domains and residues.
 BeadArrays read_sequence(ChainRequest& request, std::int64_t copy);
 
+/// Distance that the beads of a self-avoiding start of RNA keep, nm. The model's beads are 0.62 to
+/// 0.70 nm wide.
+inline constexpr double excluded_of_nucleotides = 0.6;
+
 /// True if the chain's `model` is that of RNA.
 bool is_rna(ChainRequest const& request);
 /// Makes a chain of nucleotides of `sequence` or `fasta`, at rest: beads of backbone and base by

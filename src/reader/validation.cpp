@@ -147,6 +147,12 @@ void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& d
              fmt::format("not in this version: the Fixman correction of the ring `{}`",
                          shown(draft.chain.name)),
              "leave it out");
+    if (draft.chain.redundant_links > 0)
+        fail(at,
+             fmt::format("the Fixman correction of chain `{}`, {} of whose links {} redundant",
+                         shown(draft.chain.name), draft.chain.redundant_links,
+                         draft.chain.redundant_links == 1 ? "is" : "are"),
+             "leave it out, or leave out cross-links until none is redundant");
     if (!(dynamics.temperature > 0))
         fail(at, "the Fixman correction without a temperature above 0", "add `temperature: 300`");
 }

@@ -35,7 +35,7 @@ void FrameWriter::open(std::function<void()> const& look) {
     observables_ = std::make_unique<Observables>(run_.scene, topology(), at_start_->terms);
     folder_->open(topology(), *observables_, run_.origin.go_on());
     if (folder_->frames_way().collective && !root)
-        sites_ = Sites(run_.scene, run_.system.own_runs());
+        sites_ = Sites(run_.scene, Snapshots(run_.system).own_runs());
     if (!folder_->wants_topology()) return;
     topology_is_due_ = run_.communicator.size() == 1 &&
                        run_.origin.is_frame(run_.origin.first_step()) && may_write_beside() &&
@@ -51,8 +51,8 @@ bool FrameWriter::is_kept(std::int64_t n) const {
            run_.origin.go_on().after_step == n;
 }
 
-void FrameWriter::write_topology(ChainSystem::OwnBodies const& at_start) {
-    run_.system.pass_bodies(at_start, [&](ChainSystem::Bodies const& bodies) {
+void FrameWriter::write_topology(OwnBodies const& at_start) {
+    Snapshots(run_.system).pass(at_start, [&](SceneBodies const& bodies) {
         folder_->put_topology(sites_.part(bodies, false, run_.system.executor()),
                               run_.system.executor());
     });
@@ -65,11 +65,12 @@ FrameWriter::Observed FrameWriter::observed(bool anyway) {
     return {has_energies(run_.scene) ? run_.system.potential_energy() : std::vector<EnergyTerm>()};
 }
 
-ChainSystem::OwnBodies FrameWriter::own_bodies() {
-    return run_.system.own_bodies(
-        run_.scene.output.joint_forces,
-        run_.scene.output.coordinates && uses_joint_coordinates(run_.scene.dynamics.integrator),
-        std::exchange(spare_, {}));
+OwnBodies FrameWriter::own_bodies() {
+    return Snapshots(run_.system)
+        .own(
+            run_.scene.output.joint_forces,
+            run_.scene.output.coordinates && uses_joint_coordinates(run_.scene.dynamics.integrator),
+            std::exchange(spare_, {}));
 }
 
 bool FrameWriter::may_write_beside() const {
@@ -107,7 +108,7 @@ void FrameWriter::gather() {
     if (run_.communicator.size() == 1) return;
     Stopwatch const watch(seconds_["gathering frames"]);
     pending_->all =
-        run_.system.gather_bodies(*pending_->now.bodies, std::exchange(spare_of_all_, {}));
+        Snapshots(run_.system).gathered(*pending_->now.bodies, std::exchange(spare_of_all_, {}));
 }
 
 bool FrameWriter::write_beside(double& writing) {
@@ -156,7 +157,7 @@ void FrameWriter::write(PendingFrame const& frame) {
     folder_->begin(frame.step, run_.origin.time(frame.step));
     observables_->begin();
     bool const together = folder_->frames_way().collective;
-    auto const take = [&](ChainSystem::Bodies const& bodies) {
+    auto const take = [&](SceneBodies const& bodies) {
         Frame const part =
             sites_.part(bodies, run_.scene.output.velocities && !together, run_.system.executor());
         if (!together) folder_->put(std::span(&part, 1));
@@ -164,9 +165,9 @@ void FrameWriter::write(PendingFrame const& frame) {
         for (Vec3 const& x : bodies.motion.position) run_.verdict.note_coordinate(norm(x));
     };
     if (frame.all)
-        run_.system.pass_bodies(*frame.all, take);
+        Snapshots(run_.system).pass(*frame.all, take);
     else
-        run_.system.pass_bodies(*frame.now.bodies, take);
+        Snapshots(run_.system).pass(*frame.now.bodies, take);
     if (together) put_own(*frame.now.bodies);
     bool const root = run_.communicator.rank() == 0;
     if (root) judge(frame);
@@ -184,8 +185,8 @@ void FrameWriter::judge(PendingFrame const& frame) {
     run_.verdict.add_frame(frame.step, observables_->kinetic(), potential);
 }
 
-void FrameWriter::put_own(ChainSystem::OwnBodies const& own) {
-    run_.system.pass_own_bodies(own, [&](std::vector<ChainSystem::Bodies> const& runs) {
+void FrameWriter::put_own(OwnBodies const& own) {
+    Snapshots(run_.system).pass_own(own, [&](std::vector<SceneBodies> const& runs) {
         std::vector<Frame> parts(runs.size());
         run_.system.executor().for_each_of_many_or_few(
             std::ssize(runs), [&](std::int64_t i, Executor const& within) {

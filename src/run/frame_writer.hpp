@@ -69,7 +69,7 @@ class FrameWriter {
     /// Observations at a step.
     struct Observed {
         std::vector<EnergyTerm> terms;
-        std::optional<ChainSystem::OwnBodies> bodies = std::nullopt;  // computed on demand
+        std::optional<OwnBodies> bodies = std::nullopt;  // computed on demand
     };
     /// Frame that is being written.
     struct PendingFrame {
@@ -77,13 +77,13 @@ class FrameWriter {
         double error;
         Observed now;
         std::vector<Vector<double, 6>> at_tips;
-        std::optional<ChainSystem::AllBodies> all = std::nullopt;  // if ranks have sent their parts
+        std::optional<AllBodies> all = std::nullopt;  // if ranks have sent their parts
     };
     /// Computes what observers need. `anyway`: forces are computed even if nothing requests them.
     Observed observed(bool anyway = false);
-    ChainSystem::OwnBodies own_bodies();
+    OwnBodies own_bodies();
     /// Writes the topology files from the bodies at the first step.
-    void write_topology(ChainSystem::OwnBodies const& at_start);
+    void write_topology(OwnBodies const& at_start);
     /// True if frames may be written concurrently with steps.
     bool may_write_beside() const;
     /// Gathers the pending frame on rank 0. Collective.
@@ -98,7 +98,7 @@ class FrameWriter {
     /// Computes a frame's row of observables and passes its energies to the verdict. Rank 0 only.
     void judge(PendingFrame const&);
     /// Writes this rank's own bodies of a frame in collective mode.
-    void put_own(ChainSystem::OwnBodies const&);
+    void put_own(OwnBodies const&);
 
     Source run_;
     Sites sites_;

@@ -210,7 +210,7 @@ void RunFolder::check() {
 }
 
 void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const& system,
-                                 ChainSystem::OwnState const& own) {
+                                 OwnState const& own) {
     with_frames(
         [&] { trajectory_->flush(); });  // a restart needs every frame up to the checkpoint's step
     on_disk([&] {
@@ -219,16 +219,17 @@ void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const
     });
     std::map<std::string, std::int64_t> sizes;
     for (auto const& [name, array] : own) sizes[name] = scene_.bodies() * array.width;
+    CheckpointParts const parts(system);
     telling_way_back([&] {
         CheckpointWriter writer(communicator_, path("checkpoint.h5"), checkpoint, sizes);
         checkpoints_way_ = writer.way();
         for (auto const& [name, array] : own)
             if (checkpoints_way_.collective)
-                system.pass_own_array(array, [&, &of = name](std::vector<ArrayPart> const& parts) {
-                    writer.put(of, parts);
+                parts.pass_own(array, [&, &of = name](std::vector<ArrayPart> const& own_parts) {
+                    writer.put(of, own_parts);
                 });
             else
-                system.pass_array(array, [&, &of = name](ArrayPart const& part) {
+                parts.pass(array, [&, &of = name](ArrayPart const& part) {
                     writer.put(of, std::span(&part, 1));
                 });
         writer.finish();

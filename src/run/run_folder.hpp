@@ -53,7 +53,7 @@ class RunFolder {
     /// Number of frames in the trajectory, and of lines in the table, before step n. Rank 0 only.
     std::int64_t records_before(std::int64_t n) const;
     /// Writes a checkpoint together with the arrays of the bodies that ranks hold. Collective.
-    void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
+    void write_checkpoint(Checkpoint const&, ChainSystem const&, OwnState const&);
     /// Mode in which the last checkpoint was written.
     ParallelIoMode const& checkpoints_way() const { return checkpoints_way_; }
     /// Returns the table of observables as it stands in its file, with the frames of preceding

@@ -253,7 +253,7 @@ class Run {
         c.integers[whether_frame] = origin_.is_frame(n) || is_kept ? 1 : 0;
         if (!shares_.shares.empty())
             c.arrays[array_of_shares] = {shares_.shares.begin(), shares_.shares.end()};
-        ChainSystem::OwnState own = system_.own_state();
+        OwnState own = CheckpointParts(system_).own_state();
         stepper_->save(own);
         frames_.folder().write_checkpoint(c, system_, own);
         saved_at_ = seconds_now();

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "scene/freedom.hpp"
@@ -12,8 +13,14 @@ namespace {
 
 constexpr std::size_t most_named = 6;  // runs of alike chains that a sentence names
 
+bool joins_the_same(CrossLink const& a, CrossLink const& b) {
+    return a.inboard == b.inboard && a.outboard == b.outboard;
+}
+
 bool alike(ChainSpec const& a, ChainSpec const& b) {
     return a.size() == b.size() && a.parent == b.parent && a.base == b.base &&
+           std::equal(a.crosslinks.begin(), a.crosslinks.end(), b.crosslinks.begin(),
+                      b.crosslinks.end(), joins_the_same) &&
            std::string_view(contents_of(a)) == contents_of(b) && a.tip == b.tip &&
            (a.tip == Tip::free || tip_name(a) == tip_name(b)) && handle_kind(a) == handle_kind(b);
 }
@@ -30,6 +37,9 @@ std::string text_of(Scene const& scene, AlikeChains const& run) {
         fmt::format("{} {}{} of {} {}", run.count, first.is_branched() ? "branched " : "",
                     run.count == 1 ? "chain" : "chains", first.size(), contents_text(first));
     if (first.is_ring()) text += " in a ring";
+    if (first.is_cross_linked())
+        text += fmt::format(" with {} cross-link{}{}", first.crosslinks.size(),
+                            first.crosslinks.size() == 1 ? "" : "s", run.count == 1 ? "" : " each");
     std::string const name = scene.name_in_file(run.first);
     return text + (run.count == 1 ? fmt::format(" ({})", name)
                                   : fmt::format(" ({} to {})", name,

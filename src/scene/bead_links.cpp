@@ -44,6 +44,8 @@ std::vector<BeadLink> bead_links(ChainSpec const& chain) {
     for (std::size_t k = 1; k < chain.size(); ++k)
         links.push_back({static_cast<std::int64_t>(inboard_of(chain.parent, k)),
                          static_cast<std::int64_t>(k), chain.beads.length[k]});
+    for (CrossLink const& link : chain.crosslinks)
+        links.push_back({link.inboard, link.outboard, link.length});
     if (chain.is_ring())
         links.push_back({0, static_cast<std::int64_t>(chain.size()) - 1, chain.tip_joint.length});
     return links;

@@ -15,8 +15,9 @@ struct BeadLink {
     double length;
 };
 
-/// Returns the links of a chain that begin and end at beads, the link that closes a ring last or,
-/// for bodies, first. Links of bodies that begin or end elsewhere are left out.
+/// Returns the links of a chain that begin and end at beads: those to inboard beads, cross-links,
+/// and the link that closes a ring last or, for bodies, first. Links of bodies that begin or end
+/// elsewhere are left out.
 std::vector<BeadLink> bead_links(ChainSpec const& chain);
 
 }  // namespace catena::scene

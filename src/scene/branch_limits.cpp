@@ -8,15 +8,17 @@
 namespace catena::scene {
 namespace {
 
-/// Throws InputError if the chain has bodies or a tip that branched chains do not support.
+/// Throws InputError if the chain has bodies or a tip that branched or cross-linked chains do not
+/// support.
 void refuse_parts(Scene const& scene, ChainSpec const& chain) {
-    std::string const where = scene.file + ": chain " + chain.name;
+    std::string const where = scene.file + ": chain " + chain.name,
+                      what = std::string("a ") + kind_of_paths(chain) + " chain has ",
+                      part = branches(chain) ? "branches" : "cross-links";
     if (!chain.is_beads())
-        throw InputError("a branched chain has rigid bodies", where,
-                         "make it of point beads, or of unbranched chains");
+        throw InputError(what + "rigid bodies", where,
+                         "make it of point beads, or leave out the " + part);
     if (chain.tip == Tip::jointed)
-        throw InputError("a branched chain has a jointed tip", where,
-                         "leave out tip, or the branches");
+        throw InputError(what + "a jointed tip", where, "leave out tip, or the " + part);
 }
 
 }  // namespace
@@ -31,19 +33,31 @@ bool has_branches(Scene const& scene) {
     return std::any_of(scene.chains.begin(), scene.chains.end(), branches);
 }
 
-void refuse_unsupported_branches(Scene const& scene, std::int64_t ranks) {
+bool goes_by_paths(ChainSpec const& chain) { return chain.is_cross_linked() || branches(chain); }
+
+bool has_paths(Scene const& scene) {
+    return std::any_of(scene.chains.begin(), scene.chains.end(), goes_by_paths);
+}
+
+char const* kind_of_paths(ChainSpec const& chain) {
+    return branches(chain) ? "branched" : "cross-linked";
+}
+
+void refuse_unsupported_branches(Scene const& scene) {
     for (ChainSpec const& chain : scene.chains)
-        if (branches(chain)) refuse_parts(scene, chain);
-    if (!has_branches(scene)) return;
+        if (goes_by_paths(chain)) refuse_parts(scene, chain);
+    auto const first = std::find_if(scene.chains.begin(), scene.chains.end(), goes_by_paths);
+    if (first == scene.chains.end()) return;
+    std::string const these = std::string(kind_of_paths(*first)) + " chains ";
     if (scene.solver.handles != Handles::projected)
         throw InputError(
-            "branched chains have projected handles only",
+            these + "have projected handles only",
             scene.file + ": solver.handles: " + std::string(name_of(scene.solver.handles)),
             "use projected");
-    if (ranks > 1)
-        throw InputError("branched chains run on one rank",
-                         scene.file + ", " + std::to_string(ranks) + " ranks",
-                         "use mpirun -n 1 and threads (solver.backend: openmp)");
+    if (scene.solver.backend == Backend::cuda_levels)
+        throw InputError(these + "are not split between GPU and host",
+                         scene.file + ": solver.backend: cuda-levels",
+                         "use another backend, or auto");
 }
 
 }  // namespace catena::scene

@@ -1,4 +1,4 @@
-// Branched chains: what they are, and what Catena cannot do with them yet.
+// Branched and cross-linked chains: what they are, and what Catena cannot do with them yet.
 #pragma once
 
 #include <string>
@@ -11,8 +11,15 @@ namespace catena::scene {
 bool branches(ChainSpec const&);
 /// True if some chain of the scene branches.
 bool has_branches(Scene const&);
-/// Throws InputError if a chain branches and has a kind of body or tip, the scene has handles, or
-/// `ranks` are so many, that branched chains do not support.
-void refuse_unsupported_branches(Scene const&, std::int64_t ranks);
+/// True if the chain is solved path by path: it branches or has cross-links.
+bool goes_by_paths(ChainSpec const&);
+/// True if some chain of the scene is solved path by path.
+bool has_paths(Scene const&);
+/// What the chain is to a reader of messages: branched or cross-linked. Precondition:
+/// goes_by_paths().
+char const* kind_of_paths(ChainSpec const&);
+/// Throws InputError if a chain is branched or cross-linked and has a kind of body or tip, or the
+/// scene has handles or a backend, that such chains do not support.
+void refuse_unsupported_branches(Scene const&);
 
 }  // namespace catena::scene

@@ -12,6 +12,12 @@ std::vector<std::int64_t> as_parents(std::vector<std::int64_t> inboard) {
     return {};
 }
 
+std::vector<std::array<std::int64_t, 2>> ends_of_crosslinks(ChainSpec const& chain) {
+    std::vector<std::array<std::int64_t, 2>> ends;
+    for (CrossLink const& link : chain.crosslinks) ends.push_back({link.inboard, link.outboard});
+    return ends;
+}
+
 std::int64_t height_of(ChainSpec const& chain) {
     std::vector<std::int64_t> height(chain.size(), 0);
     std::int64_t most = 0;

@@ -49,7 +49,7 @@ Node const& scalar(Node const& node, char const* expected, char const* remedy) {
 /// Words of other programs, each with the key that says the same in maps that have it.
 constexpr std::pair<std::string_view, std::string_view> synonyms[] = {
     {"force", "torque"},
-    {"force", "wrench"},
+    {"load", "wrench"},
     {"effort", "torque"},
     {"position", "q"},
     {"angle", "q"},

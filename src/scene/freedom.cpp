@@ -83,6 +83,7 @@ std::int64_t freedom_of_links(ChainSpec const& chain) {
     auto const n = static_cast<std::int64_t>(chain.size());
     std::int64_t dof = 3 * n - (chain.base == Base::free ? n - 1 : n);
     for (std::size_t k = 0; k < chain.linked.size(); ++k) dof += chain.linked.is_bead(k) ? 0 : 3;
+    dof -= std::ssize(chain.crosslinks) - chain.redundant_links;
     return dof - (chain.tip == Tip::free ? 0 : 1);
 }
 

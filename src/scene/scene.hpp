@@ -179,6 +179,16 @@ struct BeadArrays {
     std::size_t size() const { return mass.size(); }
 };
 
+/// Rigid link between two beads of a chain, beside the links that join each bead to its inboard
+/// one.
+struct CrossLink {
+    /// Beads, counted from 0 within their chain; the first is the smaller number.
+    std::int64_t inboard = 0, outboard = 0;
+    /// Length, nm.
+    double length = 0;
+    bool operator==(CrossLink const&) const = default;
+};
+
 /// Numbers that a force term without arrays of its own keeps for each body of a chain.
 struct TermNumbers {
     std::string term;  // Name of the term (src/terms).
@@ -202,6 +212,11 @@ struct ChainSpec {
     /// smaller than the body's own number. Empty for an unbranched chain, where it is the body
     /// before.
     std::vector<std::int64_t> parent = {};
+    /// Cross-links of a chain of point beads, in the order of the scene.
+    std::vector<CrossLink> crosslinks = {};
+    /// Number of links, cross-links included, that keep their length at the start because the
+    /// others do. They take no degree of freedom.
+    std::int64_t redundant_links = 0;
     /// Chain identifiers and residue numbers of the beads, for topology files; empty unless a
     /// structure file gives them.
     Members members = {};
@@ -211,6 +226,7 @@ struct ChainSpec {
     bool is_beads() const { return beads.size() > 0; }
     bool is_linked() const { return linked.size() > 0; }
     bool is_branched() const { return !parent.empty(); }
+    bool is_cross_linked() const { return !crosslinks.empty(); }
     bool is_ring() const { return tip == Tip::jointed && tip_joint.ring; }
     std::size_t size() const { return beads.size() + bodies.size() + linked.size(); }
     CarriedBeads const& carried() const { return is_linked() ? linked.carried : bodies.carried; }

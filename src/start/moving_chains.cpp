@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "error.hpp"
+#include "generate/crosslinks.hpp"
 
 namespace catena {
 
@@ -94,6 +95,7 @@ std::vector<std::span<std::byte>> MovingChain::bytes() {
 }
 
 bool MovingChain::close() {
+    if (chain_.is_cross_linked()) return scene::project_links(chain_, stand_.at);
     std::vector<Vec3> at, inboard, outboard;
     std::vector<double> length, mobility;
     bool const beads = chain_.is_beads(), fixed = chain_.base == Base::fixed;

@@ -49,6 +49,48 @@ ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const
     return chain;
 }
 
+/// Makes cross-links of the constraints that join beads of a chain along no link. `firsts`: first
+/// particle of each chain.
+void add_crosslinks(std::vector<ImportedChain>& chains, std::vector<int> const& firsts,
+                    OpenMM::System const& system) {
+    for (int i = 0; i < system.getNumConstraints(); ++i) {
+        int a, b;
+        double length;
+        system.getConstraintParameters(i, a, b, length);
+        auto const [low, high] = std::minmax(a, b);
+        auto const c = static_cast<std::size_t>(
+            std::upper_bound(firsts.begin(), firsts.end(), low) - firsts.begin() - 1);
+        ImportedChain& chain = chains.at(c);
+        std::int64_t const inboard = low - firsts[c], outboard = high - firsts[c];
+        if (outboard >= std::ssize(chain.mass)) continue;
+        auto const on = static_cast<std::int64_t>(
+            scene::inboard_of(chain.parent, static_cast<std::size_t>(outboard)));
+        bool const known = std::any_of(
+            chain.crosslinks.begin(), chain.crosslinks.end(), [&](CrossLink const& link) {
+                return link.inboard == inboard && link.outboard == outboard;
+            });
+        if (on != inboard && !known) chain.crosslinks.push_back({inboard, outboard, length});
+    }
+}
+
+/// Notes the chains that constraints cross-link, in one sentence.
+std::vector<std::string> note_crosslinks(std::vector<ImportedChain> const& chains) {
+    std::size_t links = 0, linked = 0;
+    std::string name;
+    for (ImportedChain const& chain : chains) {
+        links += chain.crosslinks.size();
+        if (!chain.crosslinks.empty() && linked++ == 0) name = scene::shown(chain.name);
+    }
+    if (links == 0) return {};
+    return {
+        fmt::format("{} of {} {} of links and {}: cross-linked chains are computed on the host, "
+                    "each by one rank.",
+                    links == 1 ? "1 constraint" : fmt::format("{} constraints", links),
+                    linked == 1 ? "chain " + name : fmt::format("{} chains", linked),
+                    links == 1 ? "closes a cycle" : "close cycles",
+                    links == 1 ? "becomes a cross-link" : "become cross-links")};
+}
+
 /// Notes the unbranched chains whose ends are joined, in one sentence.
 std::vector<std::string> note_rings(std::vector<ImportedChain> const& chains,
                                     Joinings const& joinings, double temperature) {
@@ -57,6 +99,7 @@ std::vector<std::string> note_rings(std::vector<ImportedChain> const& chains,
     for (ImportedChain const& chain : chains) {
         int const size = static_cast<int>(chain.mass.size()), last = first + size - 1;
         if (size > 2 && chain.parent.empty() &&
+            !std::isinf(joinings.between(first, last).stiffness) &&
             joinings.between(first, last).is_like(joinings.to_previous(first + 1), temperature) &&
             rings++ == 0)
             name = scene::shown(chain.name);
@@ -85,7 +128,7 @@ std::vector<std::string> note_branches(std::vector<ImportedChain> const& chains)
     }
     if (branched == 0) return {};
     return {fmt::format(
-        "{} ({}): branched chains run on one rank and on the host.",
+        "{} ({}): one rank computes a whole branched chain, however many ranks there are.",
         branched == 1 ? fmt::format("Chain {} is branched", name)
                       : fmt::format("{} chains are branched, the first is {}", branched, name),
         place)};
@@ -106,7 +149,7 @@ std::vector<std::string> note_cycles(std::vector<ImportedChain> const& chains,
     auto const look = [&](int low, int high, Joining const& joining) {
         auto const l = static_cast<std::size_t>(low), h = static_cast<std::size_t>(high);
         if (first_of[h] < 0 || first_of[l] != first_of[h] || on[h] == low ||
-            !(joining.spread(temperature) <= StiffLinks::softest))
+            std::isinf(joining.stiffness) || !(joining.spread(temperature) <= StiffLinks::softest))
             return;
         if (cycles++ == 0 || (high == b && low < a)) a = low, b = high;
     };
@@ -117,7 +160,7 @@ std::vector<std::string> note_cycles(std::vector<ImportedChain> const& chains,
     if (cycles == 0) return {};
     return {fmt::format(
         "{} of branched chains {} of links (particles {} and {} from 0{}) and {}: "
-        "links form no cycles.",
+        "only constraints become cross-links.",
         cycles == 1 ? "1 stiff bond" : fmt::format("{} stiff bonds", cycles),
         cycles == 1 ? "closes a cycle" : "close cycles", a, b, cycles == 1 ? "" : ", the first",
         cycles == 1 ? "stays a force" : "stay forces")};
@@ -347,22 +390,26 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
     auto const chains = cut_at_bonds(whole, joinings, &imported.notes);
     StiffLinks links(spec.temperature, where);
     int first = 0;
+    std::vector<int> starts;
     for (auto const& chain : chains) {
         imported.chains.push_back(
             import_chain(chain, first, *system, joinings, links, {spec.temperature, where}));
+        starts.push_back(first);
         first += static_cast<int>(chain.size());
     }
+    add_crosslinks(imported.chains, starts, *system);
     std::vector<std::int64_t> firsts;  // of the topology's chains
     std::int64_t next = 0;
     for (auto const& chain : whole) {
         firsts.push_back(next);
         next += static_cast<std::int64_t>(chain.size());
     }
-    for (auto const& notes : {links.notes(), note_branches(imported.chains),
-                              note_rings(imported.chains, joinings, spec.temperature),
-                              note_cycles(imported.chains, joinings, spec.temperature),
-                              note_joined(chains, joinings, spec.temperature),
-                              notes_on_boxless(boxless_forces(*system), firsts)})
+    for (auto const& notes :
+         {links.notes(), note_branches(imported.chains), note_crosslinks(imported.chains),
+          note_rings(imported.chains, joinings, spec.temperature),
+          note_cycles(imported.chains, joinings, spec.temperature),
+          note_joined(chains, joinings, spec.temperature),
+          notes_on_boxless(boxless_forces(*system), firsts)})
         imported.notes.insert(imported.notes.end(), notes.begin(), notes.end());
     imported.largest_spread = links.largest_spread();
     imported.screening = screening_of(*system);

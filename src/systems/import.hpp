@@ -28,6 +28,8 @@ struct ImportedChain {
     std::vector<double> length;
     /// Inboard beads as in ChainSpec::parent; empty for an unbranched chain.
     std::vector<std::int64_t> parent = {};
+    /// Constraints that close cycles of links.
+    std::vector<CrossLink> crosslinks = {};
 };
 
 /// Screened Coulomb energy between unit charges: prefactor exp(-kappa r) / r.
@@ -88,11 +90,11 @@ struct SystemLinks {
 
 /// Imports the chains of the topology; particles and atoms have the same order. Each bead hangs on
 /// an earlier one of its chain, by a link with the length of the harmonic bond or constraint
-/// between them; a chain whose beads do not follow one another is branched. Bonds that close a
-/// cycle of links stay springs. Throws InputError for unreadable files, different counts, and beads
-/// without a bond to an earlier one or with a soft spring. Also refused are virtual sites,
-/// barostats and other parts that Catena cannot drive. A build without OpenMM throws "built without
-/// OpenMM".
+/// between them; a chain whose beads do not follow one another is branched. Constraints that close
+/// a cycle of links become cross-links, bonds that do stay springs. Throws InputError for
+/// unreadable files, different counts, and beads without a bond to an earlier one or with a soft
+/// spring. Also refused are virtual sites, barostats and other parts that Catena cannot drive. A
+/// build without OpenMM throws "built without OpenMM".
 ImportedSystem import_openmm_system(OpenMmSpec const&, std::string const& scene_file);
 
 /// Reads the links of a System. Throws like import_openmm_system(), but not for neighbours.

@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
-#include "scene/branch_limits.hpp"
 #include "scene/integrator.hpp"
 
 namespace catena::terms {
@@ -72,7 +72,9 @@ std::string why_host_alone(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     if (d.given && !traits_of(d.integrator).on_gpu)
         return fmt::format("integrator {} works on the host", name_of(d.integrator));
-    return scene::has_branches(scene) ? "branched chains are computed on the host" : "";
+    bool const cross_linked = std::any_of(scene.chains.begin(), scene.chains.end(),
+                                          [](ChainSpec const& c) { return c.is_cross_linked(); });
+    return cross_linked ? "cross-linked chains are computed on the host" : "";
 }
 
 std::vector<char const*> keys_beside(std::initializer_list<char const*> before,

@@ -47,6 +47,17 @@ void add_linked(Fingerprint& print, LinkedArrays const& l) {
     add_carried(print, l.carried);
 }
 
+/// Adds ends and lengths of cross-links.
+void add_crosslinks(Fingerprint& print, ChainSpec const& chain) {
+    std::vector<std::int64_t> ends;
+    std::vector<double> lengths;
+    for (CrossLink const& link : chain.crosslinks) {
+        ends.insert(ends.end(), {link.inboard, link.outboard});
+        lengths.push_back(link.length);
+    }
+    add_named(print, "crosslinks", chain.is_cross_linked(), ends, lengths);
+}
+
 void add_term_numbers(Fingerprint& print, ChainSpec const& chain) {
     for (TermNumbers const& each : chain.term_numbers)
         add_named(print, each.term.c_str(), true, each.values);
@@ -74,6 +85,7 @@ void add_chain(Fingerprint& print, ChainSpec const& chain) {
     add_linked(print, chain.linked);
     if (chain.tip == Tip::jointed) add_tip(print, chain.tip_joint);
     add_named(print, "parents", chain.is_branched(), chain.parent);
+    add_crosslinks(print, chain);
     add_term_numbers(print, chain);
 }
 
@@ -119,6 +131,7 @@ void add_kind(Fingerprint& print, ChainSpec const& chain) {
     add_carried(print, chain.carried());
     if (chain.tip == Tip::jointed) add_tip(print, chain.tip_joint);
     add_named(print, "parents", chain.is_branched(), chain.parent);
+    add_crosslinks(print, chain);
 }
 
 void add_loads(Fingerprint& print, ChainSpec const& chain) {

@@ -130,4 +130,13 @@ Branches::Branches(std::span<std::int64_t const> inboard, bool pairwise) : first
     depth_ = depth_of(*this, partition.trees);
 }
 
+BranchCounts Branches::counts() const {
+    BranchCounts counts{paths(), 0, phases(), 0, depth()};
+    for (PhaseLists const& phase : lists) {
+        counts.runs += std::ssize(phase.runs);
+        counts.levels = std::max(counts.levels, std::ssize(phase.levels));
+    }
+    return counts;
+}
+
 }  // namespace catena::dca

@@ -24,7 +24,7 @@ namespace catena::dca {
 struct Fork {
     std::int64_t place = 0;
     std::int64_t first_path = 0, end_path = 0;
-    std::int64_t paths() const { return end_path - first_path; }
+    CATENA_HD std::int64_t paths() const { return end_path - first_path; }
 };
 
 /// Work lists of the paths of one phase, as in Schedule.
@@ -32,6 +32,15 @@ struct PhaseLists {
     std::vector<Run> runs;
     std::vector<std::vector<Merge>> levels;
     std::vector<Root> roots;
+};
+
+/// Counts of the paths of branched chains on all ranks.
+struct BranchCounts {
+    std::int64_t paths = 0, runs = 0;
+    /// Largest number of phases, and of levels of merges on a path.
+    std::int64_t phases = 0, levels = 0;
+    /// Longest way from a body to a root, as Branches::depth().
+    std::int64_t depth = 0;
 };
 
 /// The paths of branched chains on one rank.
@@ -55,12 +64,16 @@ struct Branches {
     std::vector<PhaseLists> lists;
     /// Numbers of segments and joints in the lists.
     std::int64_t slots = 0, joints = 0;
+    /// Counts of all ranks, which those who know the ranks set.
+    BranchCounts of_all_ranks;
 
     std::int64_t phases() const { return static_cast<std::int64_t>(lists.size()); }
     std::int64_t paths() const { return std::max<std::int64_t>(0, std::ssize(first_of_path) - 1); }
     /// Steps of the longest way from a body to a root: merges and eliminations on the paths, and
     /// the sums over side paths.
     std::int64_t depth() const { return depth_; }
+    /// Counts of this rank.
+    BranchCounts counts() const;
 
   private:
     std::int64_t depth_ = 0;

@@ -18,7 +18,8 @@ std::vector<std::int64_t> wholes_of(Partition const& partition, int ranks) {
     std::vector<std::int64_t> first;
     for (int chain = 0; chain < partition.chains(); ++chain) {
         ChainTree const& tree = partition.trees[static_cast<std::size_t>(chain)];
-        bool const alone = tree.bodies * ranks * chains_of_share <= partition.bodies();
+        bool const alone =
+            partition.whole_chains || tree.bodies * ranks * chains_of_share <= partition.bodies();
         for (std::int64_t unit = 0; unit < (alone ? 1 : tree.units); ++unit)
             first.push_back(partition.first_of_chain[static_cast<std::size_t>(chain)] +
                             tree.first_body_of_unit(unit));

@@ -26,10 +26,10 @@ Shares shares_of_speeds(std::span<double const> speeds);
 /// share per rank, or none.
 std::vector<std::int64_t> begins_of_shares(Shares const&, int ranks);
 
-/// Sets Partition::first_of_rank. Each indivisible part (a unit, or a chain too short to be shared)
-/// goes to the rank whose share contains the part's middle. A rank that has bodies with equal
-/// shares keeps at least one part. The trees are unchanged, and therefore the bits of every
-/// solution. Precondition: one share per rank, or none.
+/// Sets Partition::first_of_rank. Each indivisible part (a unit, or a chain that is too short to be
+/// shared or may not be) goes to the rank whose share contains the part's middle. A rank that has
+/// bodies with equal shares keeps at least one part. The trees are unchanged, and therefore the
+/// bits of every solution. Precondition: one share per rank, or none.
 void cut_by_shares(Partition&, int ranks, Shares const&);
 
 }  // namespace catena::dca

@@ -72,6 +72,8 @@ class Partition {
     std::vector<std::int64_t> first_of_rank;
     // Partner of the tip joint, one per chain.
     std::vector<TipTo> tip;
+    // True if no chain may be shared by ranks. cut_by_shares() reads it.
+    bool whole_chains = false;
 
     std::int64_t bodies() const { return first_of_chain.back(); }
     int chains() const { return static_cast<int>(trees.size()); }

@@ -64,7 +64,7 @@ TEST(Model, StepsHaveTheBitsOfTheStepper) {
         stepper->prepare(nullptr);
         stepper->step(n, nullptr);
     }
-    ChainSystem::Snapshot const at = system.snapshot();
+    SceneMotion const at = system.snapshot();
     SimulationState const state = simulation.state();
     EXPECT_EQ(state.step, 300);
     for (std::size_t k = 0; k < 2; ++k)

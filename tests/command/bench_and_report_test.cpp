@@ -165,7 +165,7 @@ TEST(Report, ErrorsAndTimesOfEveryBackendAndHandleKind) {
     EXPECT_EQ(json.at("left_out").size(), json.at("build").at("openmm") == "none"
                                               ? 3U
                                               : 2U);  // integrators of both scenes, by name
-    EXPECT_NE(json["left_out"][0].get<std::string>().find("arm.yaml: its drag or dampers"),
+    EXPECT_NE(json["left_out"][0].get<std::string>().find("arm.yaml: its joint damping"),
               std::string::npos)
         << json["left_out"][0];
     EXPECT_TRUE(std::filesystem::exists(folder / "report/report.html"));

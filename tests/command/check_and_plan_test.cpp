@@ -139,16 +139,13 @@ TEST(Plan, DescribesThePathsOfBranchedChains) {
     expect_good(e);
     for (std::string const part :
          {"3 branched chains of beads", "63 bodies in 12 paths and 2 phases",
-          "not usable: branched chains are computed on the host", "predicted as unbranched ones"})
+          "predicted as unbranched ones"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
     auto const json = catena({"plan", scene, "--json", "-"}).json();
     // The first arm goes on from the centre: paths of 6 beads, sums of three side paths of 5 beads.
     EXPECT_EQ(json.at("groups").at(0).at("depth"), 5 + 3 + 4);
     EXPECT_EQ(json.at("groups").at(0).at("runs"), 3 + 9);
-    EXPECT_TRUE(json.at("memory_bytes_per_rank").at("gpu").is_null());
-    expect_refused(
-        catena({"plan", scene, "--ranks", "4", "--latency", "2us", "--bandwidth", "1GB/s"}), 2,
-        "branched chains run on one rank");
+    EXPECT_GT(json.at("memory_bytes_per_rank").at("gpu"), 0);
     for (char const* const handles : {"full", "articulated"})
         expect_refused(catena({"check", scene, "--handles", handles}), 2, "projected");
 }

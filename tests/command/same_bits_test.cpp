@@ -89,6 +89,25 @@ TEST(SameBits, RefinedSolutions) {
                      "refined", threads_fit(), both, 2);
 }
 
+// Each branched chain is whole on one rank; some ranks have none.
+TEST(SameBits, BranchedChains) {
+    std::string const beads =
+                          "  - {name: a, generator: {brush: {backbone: 300, side_length: 3, "
+                          "length: 0.4}}}\n",
+                      tree =
+                          "  - {name: t, count: 5, generator: {random_tree: {beads: 70, seed: "
+                          "2, length: 0.4}}}\n",
+                      star =
+                          "  - {name: s, base: fixed, generator: {star: {arms: 5, arm_length: "
+                          "20, length: 0.4}}}\n";
+    std::string const crossed =
+        "  - {name: c, count: 4, generator: {freely_jointed: {beads: 60, "
+        "length: 0.4}}, crosslinks: [[3, 30], [20, 50]]}\n";
+    for (std::string const& chains :
+         {beads, beads + tree + generated("link", 300, false) + star, tree + crossed})
+        expect_same_bits(scene_of(chains), chains, threads_fit(), {Handles::projected});
+}
+
 // Every rank packs the box by itself. Velocities made of the positions let accelerations tell
 // places apart.
 TEST(SameBits, PackedChains) {

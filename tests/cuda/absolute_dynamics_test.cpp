@@ -99,6 +99,17 @@ Scene held_beads() {
         "seed: "
         "4}}}]");
 }
+Scene branched_beads() {
+    return scene_from(
+        "chains: [{name: s, count: 3, generator: {star: {arms: 7, arm_length: 20, length: 0.4}}}, "
+        "{name: d, base: fixed, generator: {dendrimer: {generations: 5, spacer: 2, length: 0.4}}}, "
+        "{name: t, generator: {random_tree: {beads: 3000, seed: 3, length: 0.4}}}]\nforces: "
+        "{gravity: [1, 2, -9.81]}");
+}
+Scene brush_of_beads() {
+    return scene_from(
+        "chains: [{name: b, generator: {brush: {backbone: 2000, side_length: 5, length: 0.4}}}]");
+}
 Scene hanging_beads() { return scene_from(sizes_of("joint: link", "fixed")); }
 Scene free_bodies() { return scene_from(sizes_of("joint: spherical", "free")); }
 Scene hanging_bodies() { return scene_from(sizes_of("joint: spherical", "fixed")); }
@@ -223,8 +234,10 @@ INSTANTIATE_TEST_SUITE_P(
         AbsoluteScene{"hanging_beads", hanging_beads},
         AbsoluteScene{"hanging_beads_full", hanging_beads, Handles::full},
         AbsoluteScene{"free_beads", free_beads}, AbsoluteScene{"held_beads", held_beads},
-        AbsoluteScene{"many_beads", many_beads}, AbsoluteScene{"longest_beads", longest_beads},
-        AbsoluteScene{"longer_beads", longer_beads}, AbsoluteScene{"free_bodies", free_bodies},
+        AbsoluteScene{"branched_beads", branched_beads},
+        AbsoluteScene{"brush_of_beads", brush_of_beads}, AbsoluteScene{"many_beads", many_beads},
+        AbsoluteScene{"longest_beads", longest_beads}, AbsoluteScene{"longer_beads", longer_beads},
+        AbsoluteScene{"free_bodies", free_bodies},
         AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
         AbsoluteScene{"held_bodies", held_bodies},
         AbsoluteScene{"carrying_bodies", carrying_bodies},

@@ -32,10 +32,11 @@ class GpuJoints : public ::testing::Test {
             stepper->step(h);
             system.close_tips();
         }
-        ChainSystem::OwnState own = system.own_state();
+        CheckpointParts const parts(system);
+        OwnState own = parts.own_state();
         for (JointDynamics* const group : system.joint())
-            system.add_rates(group->group(), group->saved_rates(), own);
-        auto arrays = system.gathered(own);
+            parts.add_rates(group->group(), group->rates(RatesOf::saved), own);
+        auto arrays = parts.gathered(own);
         for (JointDynamics* const group : system.joint())
             arrays["closure"].push_back(group->closure_error());
         system.evaluate();

@@ -10,46 +10,14 @@
 #include "error.hpp"
 #include "integrate/constrained_integrator.hpp"
 #include "mpi/communicator.hpp"
+#include "scene/branch_limits.hpp"
 #include "tests/dynamics/branched_chains.hpp"
+#include "tests/dynamics/moving_trees.hpp"
 #include "tests/integrate/constrained_run.hpp"
 #include "tests/support/same_bits.hpp"
 
 namespace catena::test {
 namespace {
-
-/// A scene of these chains, and the system that moves it.
-struct Trees {
-    explicit Trees(std::vector<ChainSpec> chains, SolverSpec const& solver = {},
-                   bool fixman = false, Vec3 const& gravity = Vec3::zero()) {
-        scene.chains = std::move(chains);
-        scene.solver = solver;
-        if (solver.backend == Backend::automatic) scene.solver.backend = Backend::segments;
-        scene.dynamics.fixman = fixman;
-        scene.forces.gravity = gravity;
-        system = std::make_unique<ChainSystem>(scene, Axes::world, *communicator);
-    }
-    /// Adds a force on each bead of the scene.
-    void push(std::vector<Vec3> const& forces) {
-        system->add_forces_by([this, forces] {
-            std::int64_t next = 0;
-            for (AbsoluteDynamics* group : system->absolute()) {
-                View<3> const view = group->bead_forces();
-                for (std::int64_t k = 0; k < view.size; ++k, ++next)
-                    view.store(k, view.load(k) + forces[static_cast<std::size_t>(next)]);
-            }
-        });
-    }
-    Scene scene;
-    std::unique_ptr<Communicator> communicator = serial_communicator();
-    std::unique_ptr<ChainSystem> system;
-};
-
-SolverSpec solver_of(Backend backend, int threads = 1) {
-    SolverSpec solver;
-    solver.backend = backend;
-    solver.threads = threads;
-    return solver;
-}
 
 /// Compares an evaluation of one chain with the dense matrix of its links. The tolerance is
 /// relative to the largest acceleration and tension.
@@ -59,7 +27,7 @@ void expect_dense(ChainSpec const& chain, std::uint64_t seed, Backend backend, d
     trees.push(forces);
     trees.system->evaluate();
     EXPECT_LE(trees.system->residual(), trees.system->residual_bound());
-    ChainSystem::Snapshot const s = trees.system->snapshot();
+    SceneMotion const s = trees.system->snapshot();
     std::vector<double> expected_along;
     std::vector<Vec3> const expected =
         DenseLinks(chain, s.position).accelerations(s.velocity, forces, expected_along);
@@ -180,8 +148,6 @@ TEST(BranchedChains, HaveTheFixmanPotentialOfTheirLinks) {
             }
 }
 
-Vec3 vector3(nlohmann::json const& v) { return {{v.at(0), v.at(1), v.at(2)}}; }
-
 /// Twenty beads of tests/data/reference/beadtree20.json, which were not computed with Catena.
 TEST(BranchedChains, HaveTheNumbersOfAThirdParty) {
     std::ifstream file(std::string(CATENA_TEST_DATA) + "/reference/beadtree20.json");
@@ -215,50 +181,10 @@ TEST(BranchedChains, HaveTheNumbersOfAThirdParty) {
     }
 }
 
-/// Integrates the trees; steps count from 0.
-class Motion {
-  public:
-    Motion(Trees& trees, ConstrainedScheme const& scheme)
-        : system_(*trees.system), integrator_(scheme, system_.absolute()) {
-        for (AbsoluteDynamics* const group : system_.absolute()) {
-            group->update_configuration();
-            group->assemble_matrices();
-            group->draw_velocities(trees.scene.boltzmann() * 300, 7,
-                                   std::vector<bool>(trees.scene.chains.size(), true));
-        }
-        begin();
-        integrator_.choose_sweeps();
-    }
-    void steps(std::int64_t first, std::int64_t end) {
-        for (std::int64_t n = first; n < end; ++n) {
-            integrator_.step(n);
-            system_.forces_and_matrices(nullptr);
-        }
-    }
-    /// Makes configuration, matrices and forces ready.
-    void begin() {
-        for (AbsoluteDynamics* const group : system_.absolute()) group->update_configuration();
-        system_.forces_and_matrices(nullptr);
-    }
-    ChainSystem::Snapshot snapshot() {
-        integrator_.observe();
-        return system_.snapshot();
-    }
-    ConstrainedIntegrator& integrator() { return integrator_; }
-
-  private:
-    ChainSystem& system_;
-    ConstrainedIntegrator integrator_;
-};
-
 std::vector<ChainSpec> some_trees() {
     return {grown(1, brush_parents(150, 7), Base::free), grown(2, star_parents(20), Base::fixed),
             grown(3, random_parents(3, 700, 0.5), Base::free),
             grown(4, random_parents(4, 700, 0.95), Base::fixed)};
-}
-
-ConstrainedScheme langevin(Trees const& trees, double step) {
-    return {Integrator::g_baoab, step, 1.0, trees.scene.boltzmann() * 300, 3, 1e-10};
 }
 
 TEST(BranchedChains, MoveBitByBitAlikeOnAnyThreadsAndVectors) {
@@ -308,7 +234,7 @@ TEST(BranchedChains, KeepEnergyToSecondOrderAndMomenta) {
     for (double const step : {0.004, 0.002, 0.001}) {
         Trees trees({grown(1, brush_parents(12, 5), Base::free)});
         Motion run(trees, {Integrator::rattle, step, 0, 0, 1, 1e-13});
-        ChainSystem::Snapshot const start = run.snapshot();
+        SceneMotion const start = run.snapshot();
         Momenta const before = momenta(trees.scene, start);
         double const energy = kinetic_energy(trees.scene, start);
         auto const count = static_cast<std::int64_t>(std::lround(0.2 / step));
@@ -331,18 +257,6 @@ TEST(BranchedChains, KeepEnergyToSecondOrderAndMomenta) {
     }
 }
 
-struct Mean {
-    double value = 0, error = 0;
-};
-/// Mean of independent values with its standard error.
-Mean mean_of(std::vector<double> const& values) {
-    auto const n = static_cast<double>(values.size());
-    double const mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
-    double square = 0;
-    for (double const v : values) square += (v - mean) * (v - mean);
-    return {mean, std::sqrt(square / (n * (n - 1)))};
-}
-
 /// Averages of stars of three arms with equal masses over a run: twice the kinetic energy per kT,
 /// and the squared cosine between arms. Each star is an independent value.
 std::pair<Mean, Mean> sample_stars(bool fixman) {
@@ -359,7 +273,7 @@ std::pair<Mean, Mean> sample_stars(bool fixman) {
     run.steps(0, rest);
     for (std::int64_t frame = 0; frame < frames; ++frame) {
         run.steps(rest + frame * every, rest + (frame + 1) * every);
-        ChainSystem::Snapshot const s = run.snapshot();
+        SceneMotion const s = run.snapshot();
         for (std::size_t i = 0; i < stars; ++i) {
             Vec3 arm[3];
             for (std::size_t k = 0; k < 4; ++k) {
@@ -419,8 +333,10 @@ TEST(BranchedChains, RefuseWhatTheyDoNotSupport) {
     SolverSpec full = solver_of(Backend::segments);
     full.handles = Handles::full;
     EXPECT_NE(refusal({tree}, full).find("projected handles only"), std::string::npos);
-    EXPECT_NE(refusal({tree}, solver_of(Backend::cuda)).find("computed on the host"),
-              std::string::npos);
+    Scene split;
+    split.chains = {tree};
+    split.solver.backend = Backend::cuda_levels;
+    EXPECT_THROW(scene::refuse_unsupported_branches(split), InputError);
     ChainSpec tipped = tree;
     tipped.tip = Tip::jointed;
     EXPECT_NE(refusal({tipped}, {}).find("jointed tip"), std::string::npos);

@@ -194,15 +194,15 @@ TEST(SimdOfSteps, FindTheSame) {
                 return system.snapshot();
             };
             auto const expected = after_steps(SimdLevel::off, *alone);
-            std::optional<ChainSystem::Snapshot> narrow;  // in the first vectors
+            std::optional<SceneMotion> narrow;  // in the first vectors
             for (SimdLevel const level : simd_levels()) {
                 std::string const name = std::string(name_of(level)) + ", joints " +
                                          std::to_string(static_cast<int>(joints)) +
                                          (springs ? ", springs" : ", many turns");
                 auto const found = after_steps(level, *alone),
                            shared = after_steps(level, testing::world());
-                auto const same_state = [](ChainSystem::Snapshot const& a,
-                                           ChainSystem::Snapshot const& b) {
+                auto const same_state = [](SceneMotion const& a,
+                                           SceneMotion const& b) {
                     return same_bits(a.position, b.position) && same_bits(a.velocity, b.velocity) &&
                            same_bits(a.orientation, b.orientation);
                 };

@@ -34,12 +34,12 @@ class Constrained {
             system_.forces_and_matrices(nullptr);
         }
     }
-    ChainSystem::Snapshot snapshot() {
+    SceneMotion snapshot() {
         integrator_.observe();
         return system_.snapshot();
     }
     double energy() {
-        ChainSystem::Snapshot const s = snapshot();
+        SceneMotion const s = snapshot();
         double e = kinetic_energy(scene_, s);
         for (EnergyTerm const& term : system_.potential_energy()) e += term.value;
         return e;
@@ -73,7 +73,7 @@ struct Momenta {
     Vec3 linear = Vec3::zero(), angular = Vec3::zero();
     double size = 0;
 };
-inline Momenta momenta(Scene const& scene, ChainSystem::Snapshot const& s) {
+inline Momenta momenta(Scene const& scene, SceneMotion const& s) {
     Momenta m;
     std::size_t i = 0;
     for (ChainSpec const& chain : scene.chains)

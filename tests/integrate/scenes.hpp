@@ -33,6 +33,18 @@ inline RunScene const run_scenes[] = {
      "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5, fixman: "
      "true}\noutput: {every: 5, checkpoint_every: "
      "10}\n"},
+    {"langevin_branched",
+     "chains: [{name: s, count: 5, velocities: thermal, generator: {star: {arms: 4, arm_length: 9, "
+     "length: 0.4}}}, {name: a, velocities: thermal, generator: {freely_jointed: {beads: 90, "
+     "length: 0.38}}}, {name: b, base: fixed, velocities: thermal, generator: {brush: {backbone: "
+     "40, side_length: 3, length: 0.4}}}]\n"
+     "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5, fixman: "
+     "true}\noutput: {every: 5, checkpoint_every: 10, joint_forces: true}\n"},
+    {"rattle_branched",
+     "chains: [{name: s, count: 3, velocities: thermal, generator: {dendrimer: {generations: 3, "
+     "length: 0.4}}}]\n"
+     "dynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: "
+     "{every: 5, checkpoint_every: 10}\n"},
     {"rattle_bodies",
      "chains: [{name: a, base: free, velocities: thermal, generator: {random: {bodies: 60, joint: "
      "spherical, seed: 1}}}, {name: b, base: "

@@ -86,6 +86,15 @@ def of_homes():
     yield expect("drag in a comment", homes(**{"src/run/a.cpp": drag, "src/plan/b.cpp": "// " + drag}), 0, "drag: 1 of at most 1")
     named = homes(**{"src/dynamics/a.hpp": "void verlet_move();\n"})
     yield expect("an integrator in the dynamics", named, 1, "integrators in the dynamics: 1 of at most 0")
+    # Functions, types and what they hold are no data members; a{}, b = f() and c(0) are one each.
+    inner = "    void f() const { int x = 0; g(x); }\n    int h(int i = 0) const;\n    struct Inner { int a, b; };\n    using A = int;\n"
+    held = inner + "    std::map<int, std::function<void(int)>> a{}, b = f();\n" + "".join(f"    int m{i};  // one\n" for i in range(18))
+    yield expect("20 data members", homes(**{"src/run/a.hpp": "class Full {\n" + held + "};\n"}), 0, "classes above")
+    more = homes(**{"src/run/a.hpp": "class Full final : public Base<int> {\n" + held + "    int last = 0;\n};\n"})
+    yield expect("21 data members", more, 1, "class Full has 26 lines and 21 data members")
+    long = homes(**{"src/run/a.hpp": "struct Long {\n" + "    void f();\n" * 249 + "};\n"})
+    yield expect("251 lines", long, 1, "class Long has 251 lines and 0 data members")
+    yield expect("a class listed in vain", homes(**{"src/run/a.hpp": "class TreeSolver {\n};\n"}), 1, "remove it from LARGER")
 
 
 def of_pages():

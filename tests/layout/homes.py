@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Counts the sources that name what varies (force terms, integrators) outside its home, and fails above the bound reached.
+Measures every class and fails if one is too large.
 
 What varies has one home: src/terms has force terms, src/integrate/joint_programs.cpp and src/scene/integrator.hpp have integrators.
-Other code asks all of them for their properties. The oracles are independent and count nowhere.
+Other code asks all of them for their properties. The oracles are independent and count nowhere, nor does what other tools name (src/foreign).
 usage: homes.py [ROOT]
 """
 import os
@@ -10,11 +11,12 @@ import re
 import subprocess
 import sys
 
-HOMES = ("src/terms/", "src/oracle/", "src/keys/", "src/scene/scene.hpp", "src/scene/integrator.hpp")
+HOMES = ("src/terms/", "src/oracle/", "src/keys/", "src/scene/scene.hpp", "src/scene/integrator.hpp",
+         "src/foreign/", "src/systems/", "src/plugin/")  # These have force fields and integrators of others.
 # What names it, and the most files that may.
 NAMES = {
-    "gravity": (r"forces\.gravity|given_?\.gravity|Gravity\b", 18),
-    "joint springs": (r"\.stiffness\b|\.springs\b|JointSpring\b", 19),
+    "gravity": (r"forces\.gravity|given_?\.gravity|Gravity\b", 19),
+    "joint springs": (r"\.stiffness\b|\.springs\b|JointSpring\b", 16),
     "joint dampers": (r"\.damping\b|\.dampers\b|JointDamper\b", 8),
     "wrenches": (r"\.wrench\b|wrench_force\b|wrench_torque\b|\.wrenches\b", 17),
     "drag": (r"\.drag\b|(linear|angular)_drag\b|\.dragged\b|Drag\b", 1),
@@ -25,20 +27,120 @@ NAMES = {
 }
 # Functions of interfaces, and the most there may be.
 FUNCTIONS = {
-    ("virtual functions of JointDynamics", "src/dynamics/joint/joint_dynamics.hpp"): (r"^    virtual ", 28),
+    ("virtual functions of JointDynamics", "src/dynamics/joint/joint_dynamics.hpp"): (r"^    virtual ", 12),
 }
+# The most lines and data members of a class.
+LINES, MEMBERS = 250, 20
+# Larger classes: their lines and members may fall only. A class that is no longer larger leaves the list.
+LARGER = {
+    "BeadDynamics": (453, 38),
+    "BlockOfStage": (316, 9),
+    "BodyArrays": (49, 21),
+    "CalvadosComponent": (29, 22),
+    "ChainGroup": (146, 50),
+    "ChainReader": (284, 7),
+    "DeviceSpace": (347, 5),
+    "DeviceTree": (292, 11),
+    "FrameStart": (263, 9),
+    "FusedSweep": (467, 3),
+    "GhostPath": (366, 21),
+    "GpuPath": (124, 21),
+    "H5mdWriter": (305, 11),
+    "Hdf5Bodies": (284, 4),
+    "HostSpace": (254, 1),
+    "JointKinematics": (209, 28),
+    "JointLoads": (366, 21),
+    "MpiCommunicator": (267, 11),
+    "OnDevice": (189, 22),
+    "OpenMmForces": (60, 21),
+    "Planner": (267, 6),
+    "RevoluteRunsSideBySide": (429, 0),
+    "RevoluteTeam": (297, 10),
+    "RigidChains": (267, 41),
+    "RigidDynamics": (513, 60),
+    "Run": (274, 19),
+    "SamplingRow": (40, 25),
+    "ShortTeams": (347, 11),
+    "SpaceLevels": (216, 25),
+    "TableCheck": (294, 11),
+    "TreeSolver": (363, 27),
+}
+HEAD = re.compile(r"\b(?:class|struct)\s+([A-Za-z_]\w*)(?:<[^;{}()]*>)?\s*(?:final\s*)?(?::[^;{}]*)?\{")
+NO_MEMBER = re.compile(r"(using|typedef|friend|static|template|enum|class|struct|union|constexpr|requires|virtual|explicit|CATENA_HD)\b")
 
 
 def sources(root):
     listed = subprocess.run(["git", "-C", root, "ls-files", "src", "cuda", "mpi"], capture_output=True, text=True, check=True).stdout.split()
-    return [path for path in listed if re.search(r"\.(cpp|hpp|cu|cuh)$", path) and not path.startswith(HOMES)]
+    paths = [path for path in listed if re.search(r"\.(cpp|hpp|cu|cuh)$", path)]
+    return {path: open(os.path.join(root, path), encoding="utf-8").read() for path in paths}
 
 
-def counts(root):
-    texts = {}
-    for path in sources(root):
-        with open(os.path.join(root, path), encoding="utf-8") as file:
-            texts[path] = re.sub(r"//.*", "", file.read())
+def blank(text):
+    """The text without comments, literals and preprocessor lines; its line breaks stay."""
+    def spaces(match):
+        return re.sub(r"[^\n]", " ", match.group())
+    text = re.sub(r"//[^\n]*|/\*.*?\*/", spaces, text, flags=re.S)
+    text = re.sub(r'"(\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(\\.|[^\'\\\n])+\'', "0", text)
+    return re.sub(r"^[ \t]*#[^\n]*", spaces, text, flags=re.M)
+
+
+def body_at(text, brace):
+    """What stands between the brace at this place and its partner, and the same without what stands in inner braces."""
+    depth, flat = 0, []
+    for at in range(brace, len(text)):
+        depth += (text[at] == "{") - (text[at] == "}")
+        if depth == 0:
+            return text[brace + 1:at], "".join(flat)
+        if depth == 1 and at > brace or depth == 2 and text[at] == "{":
+            flat.append(text[at])
+    return text[brace + 1:], "".join(flat)
+
+
+def innermost_removed(text, pattern):
+    while re.search(pattern, text):
+        text = re.sub(pattern, "", text)
+    return text
+
+
+def members_of(flat):
+    """The number of data members in the outer level of a class."""
+    count = 0
+    for part in re.sub(r"\b(public|private|protected)\s*:", "", flat).split(";"):
+        part = innermost_removed(part, r"<[^<>]*>")
+        part = re.split(r"\{\}(?=\s*[^\s,={])", part)[-1].strip()  # What precedes are definitions of functions.
+        declared = re.sub(r"\{\}", "", part)
+        if NO_MEMBER.match(declared) or "(" in declared.split("=")[0] or len(declared.split()) < 2:
+            continue
+        count += len(innermost_removed(declared, r"\([^()]*\)").split(","))
+    return count
+
+
+def classes(texts):
+    """File, name, lines and data members of every class."""
+    for path, text in texts.items():
+        text = blank(text)
+        for head in HEAD.finditer(text):
+            if not re.search(r"enum\s*$", text[:head.start()]):
+                body, flat = body_at(text, head.end() - 1)
+                yield path, head.group(1), head.group().count("\n") + body.count("\n") + 1, members_of(flat)
+
+
+def too_large(texts):
+    """One line per class above its bounds or listed in vain."""
+    larger, seen = set(), set()
+    for path, name, lines, members in classes(texts):
+        seen.add(name)
+        most_lines, most_members = LARGER.get(name, (LINES, MEMBERS))
+        if lines > max(LINES, most_lines) or members > max(MEMBERS, most_members):
+            yield f"{path}: class {name} has {lines} lines and {members} data members; split it"
+        if lines > LINES or members > MEMBERS:
+            larger.add(name)
+    for name in sorted(seen.intersection(LARGER) - larger):
+        yield f"class {name} has at most {LINES} lines and {MEMBERS} data members; remove it from LARGER"
+
+
+def counts(texts):
+    texts = {path: re.sub(r"//.*", "", text) for path, text in texts.items() if not path.startswith(HOMES)}
     for name, (pattern, most) in NAMES.items():
         among = {path: text for path, text in texts.items() if "dynamics" not in name or path.startswith("src/dynamics/")}
         yield name, most, sorted(path for path, text in among.items() if re.search(pattern, text))
@@ -48,12 +150,17 @@ def counts(root):
 
 def main():
     root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+    texts = sources(root)
     bad = False
-    for name, most, found in counts(root):
+    for name, most, found in counts(texts):
         print(f"{name}: {len(found)} of at most {most}")
         if len(found) > most:
             bad = True
             print("    " + ", ".join(found))
+    print(f"classes above {LINES} lines or {MEMBERS} data members: at most {len(LARGER)}")
+    for line in too_large(texts):
+        bad = True
+        print("    " + line)
     sys.exit(1 if bad else 0)
 
 

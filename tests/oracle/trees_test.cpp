@@ -56,6 +56,48 @@ TEST(Trees, SolversAgreeIn113Bits) {
     solvers_agree<Quad>(24, 16, [](std::uint64_t s) { return random_case(s, 12); });
 }
 
+/// A random tree whose first, middle and last beads have cross-links.
+std::optional<Case> cross_linked_case(std::uint64_t seed, double largest) {
+    auto const n = static_cast<std::size_t>(9 + Random(seed + 77).uniform() * (largest - 9));
+    ChainSpec chain = random_bead_tree(seed, n, seed % 2 == 0 ? Base::fixed : Base::free,
+                                       0.25 * static_cast<double>(seed % 4));
+    std::vector<Vec3> const& x = chain.beads.position;
+    for (auto const& [a, b] :
+         {std::pair<std::size_t, std::size_t>{0, n - 1}, {n / 2, n - 1}, {n / 3, n / 2}})
+        if (inboard_of(chain.parent, b) != a)
+            chain.crosslinks.push_back(
+                {static_cast<std::int64_t>(a), static_cast<std::int64_t>(b), norm(x[b] - x[a])});
+    oracle::project_velocities(chain, 0);
+    return Case{chain, {Random(seed).vector(10), random_forces(seed + 9, n)}};
+}
+
+TEST(Trees, SolversOfCrossLinksAgree) {
+    solvers_agree<double>(200, 16, [](std::uint64_t s) { return cross_linked_case(s, 40); });
+}
+TEST(Trees, SolversOfCrossLinksAgreeInLongDouble) {
+    solvers_agree<long double>(40, 16, [](std::uint64_t s) { return cross_linked_case(s, 20); });
+}
+
+/// Projected velocities keep all lengths, and accelerations keep them to second order in time.
+TEST(Trees, CrossLinksKeepTheirLengths) {
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+        auto const [chain, loads] = *cross_linked_case(seed + 300, 40);
+        auto const r = oracle::aba<double>(chain, loads);
+        ASSERT_EQ(r.crosslink_tension.size(), chain.crosslinks.size());
+        for (CrossLink const& link : chain.crosslinks) {
+            auto const a = static_cast<std::size_t>(link.inboard),
+                       b = static_cast<std::size_t>(link.outboard);
+            BeadArrays const& beads = chain.beads;
+            Vec3 const d = beads.position[b] - beads.position[a],
+                       v = beads.velocity[b] - beads.velocity[a],
+                       second = r.com_acceleration[b] - r.com_acceleration[a];
+            EXPECT_NEAR(dot(d, v), 0, 1e-12 * norm(d)) << "seed " << seed;
+            EXPECT_NEAR(dot(v, v) + dot(d, second), 0, 1e-9 * (dot(v, v) + norm(d) * norm(second)))
+                << "seed " << seed;
+        }
+    }
+}
+
 /// The residual by inverse dynamics is rounding for the accelerations found, and not for others.
 TEST(Trees, InverseDynamics) {
     for (std::uint64_t seed = 0; seed < 40; ++seed) {

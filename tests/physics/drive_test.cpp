@@ -58,7 +58,7 @@ class Driven {
     double power() {
         system_.evaluate();
         auto const force = system_.accelerations().joint_force;
-        ChainSystem::Snapshot const at = system_.snapshot();
+        SceneMotion const at = system_.snapshot();
         double sum = 0;
         for (DrivenJoint const& d : scene_.chains[0].bodies.driven) {
             auto const k = static_cast<std::size_t>(d.body);

@@ -1,6 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "cuda/space/memory.hpp"
+#include "cuda/space/memory_estimator.hpp"
 #include "plan/family.hpp"
 
 namespace catena::test {
@@ -41,6 +44,28 @@ TEST(GpuMemory, TransientIsTheWidestField) {
               6 * columns * 8);  // axes, inertias
     EXPECT_EQ(needed({scene::RandomJoint::link, false, Axes::world}, 1000, Backend::cuda).transient,
               3 * columns * 8);
+}
+
+/// Solver and dynamics of a group hold one model, which goes with the last of them.
+TEST(GpuMemory, ModelOfAGroupIsCountedOnce) {
+    plan::Family const family{scene::RandomJoint::revolute};
+    Scene const scene = plan::sample(family, 1000);
+    auto const alone = serial_communicator();
+    auto const groups =
+        make_groups(scene, family.axes, family.handles, scene.solver.pairwise(), *alone);
+    cuda::MemoryEstimator const space, copy = space, other;
+    cuda::Count const count;
+    std::optional first = space.model(*groups.front());
+    std::int64_t const bytes = count.sum().bytes;
+    EXPECT_GE(bytes, 1000 * (2 * 3 + 2 * 6 + 2 * (1 + 6)) * 8);
+    std::optional second = copy.model(*groups.front());
+    EXPECT_EQ(count.sum().bytes, bytes);
+    std::optional const third = other.model(*groups.front());
+    EXPECT_EQ(count.sum().bytes, 2 * bytes);
+    first.reset();
+    second.reset();
+    std::optional const again = space.model(*groups.front());
+    EXPECT_EQ(count.sum().bytes, 3 * bytes);
 }
 
 TEST(GpuMemory, TooLittleIsSaidInGibibytes) {

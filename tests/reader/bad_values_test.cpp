@@ -92,8 +92,8 @@ Refusal const keys_cases[] = {
      "`torque`?"},
     {"another_word_in_body", R"y(chains:
   - bodies:
-      - {mass: 1, inertia: [1, 1, 1], force: [0, 0, 2]})y",
-     "unknown key `force` (s.yaml: chains[0].bodies[0].force, body 1, line 3): did you mean "
+      - {mass: 1, inertia: [1, 1, 1], load: [0, 0, 2]})y",
+     "unknown key `load` (s.yaml: chains[0].bodies[0].load, body 1, line 3): did you mean "
      "`wrench`?"},
     {"another_word_in_dynamics", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: rattle, dt: 1})y",

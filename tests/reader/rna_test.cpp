@@ -65,6 +65,41 @@ TEST_F(Rna, OfOneNucleotideHasNoBranch) {
     EXPECT_FALSE(one.is_branched());
 }
 
+/// Smallest distance of beads that no link joins over all chains and images in a box, nm.
+double nearest_in_box(Scene const& scene) {
+    double least = INFINITY;
+    std::vector<ChainSpec> const& chains = scene.chains;
+    for (std::size_t c = 0; c < chains.size(); ++c)
+        for (std::size_t d = 0; d <= c; ++d)
+            for (std::size_t k = 0; k < chains[c].size(); ++k)
+                for (std::size_t j = 0; j < (c == d ? k : chains[d].size()); ++j) {
+                    if (c == d && j == scene::inboard_of(chains[c].parent, k)) continue;
+                    Vec3 apart = chains[c].beads.position[k] - chains[d].beads.position[j];
+                    for (int x = 0; x < 3; ++x)
+                        apart[x] -= (*scene.box)[x] * std::round(apart[x] / (*scene.box)[x]);
+                    least = std::min(least, norm(apart));
+                }
+    return least;
+}
+
+/// Among peptides, in a box that is too full for whole chains side by side, and in a slab.
+TEST_F(Rna, IsPackedIntoFullBoxesAndSlabs) {
+    std::string const chains =
+        "chains: [{name: rna, model: calvados_rna, count: 25, sequence: ACGUACGUACGUACGUACGUACGU}, "
+        "{name: peptide, model: calvados2, count: 20, sequence: RGGRGGRGGRGGRGGRGG}]\n";
+    Scene const full = read(chains + "box: {periodic: [12, 12, 12]}"),
+                slab = read(chains +
+                            "box: {periodic: [12, 12, 40]}\nplace: {slab: {axis: z, "
+                            "thickness: 12}}");
+    for (Scene const& scene : {full, slab}) {
+        EXPECT_TRUE(scene.notes.empty()) << scene.notes.front();
+        for (ChainSpec const& each : scene.chains) EXPECT_LT(largest_gap(each), 1e-12);
+        EXPECT_GE(nearest_in_box(scene), 0.6 - 1e-12);
+    }
+    for (ChainSpec const& each : slab.chains)
+        for (Vec3 const& x : each.beads.position) EXPECT_LE(std::abs(x[2] - 20), 6);
+}
+
 TEST_F(Rna, StartsWithoutOverlaps) {
     std::string const copies = chain(
         "count: 2, conformation: self_avoiding, sequence: ACGUACGUACGUACGUACGUACGUACGUACGUACGU");

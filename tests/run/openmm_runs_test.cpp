@@ -72,6 +72,24 @@ TEST_P(OpenMmRuns, WithGhostsARestartIsTheUndisturbedRun) {
     EXPECT_EQ(own, 9 * 12 + 51);
 }
 
+/// Chains of RNA stay whole; forces between ranks are those of any other chains.
+TEST_P(OpenMmRuns, BranchedChainsOnRanks) {
+    std::vector<std::string> const rna{
+        "chains[0]={name: rna, count: 5, sequence: ACGUUGCA, model: calvados_rna, conformation: "
+        "self_avoiding, velocities: thermal}"};
+    run_with(world_, "all", "replicate: true", 20, "", rna);
+    if (world_.rank() == 0) {
+        run_with(*serial_communicator(), "one", "replicate: true", 20, "", rna);
+        EXPECT_EQ(arrays("all"), arrays("one"));
+    }
+    run_with(world_, "whole", "audit: true", 40, "", rna);
+    run_with(world_, "parts", "audit: true", 20, "", rna);
+    run_with(world_, "parts", "audit: true", 40, "parts/checkpoint.h5", rna);
+    if (world_.rank() == 0) {
+        EXPECT_EQ(arrays("whole"), arrays("parts"));
+    }
+}
+
 /// Where forces round by who owns what, a restart needs the very shares.
 TEST_P(OpenMmRuns, WithUnequalSharesARestartIsTheUndisturbedRun) {
     costs_ = [](Scene const&, Axes, Communicator const& ranks, double) {

@@ -346,8 +346,9 @@ TEST_F(Import, BranchesHangOnEarlierBeads) {
     bonds->addBond(3, 2, 0.5, 1);  // too soft for a link
     ImportedSystem const imported = import(wound(beads, 1));
     EXPECT_EQ(imported.notes,
-              std::vector<std::string>{"Chain A is branched (particle 3 hangs on particle 1, from "
-                                       "0): branched chains run on one rank and on the host."});
+              std::vector<std::string>{
+                  "Chain A is branched (particle 3 hangs on particle 1, from "
+                  "0): one rank computes a whole branched chain, however many ranks there are."});
     EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
     EXPECT_EQ(imported.chains[0].length, (std::vector<double>{0, 0.38, 0.39, 0.41}));
     EXPECT_TRUE(imported.chains[1].parent.empty());
@@ -365,7 +366,22 @@ TEST_F(Import, BondsThatCloseCyclesOfBranchesAreNamed) {
     EXPECT_EQ(imported.chains[0].parent, (std::vector<std::int64_t>{-1, 0, 1, 1}));
     EXPECT_EQ(imported.notes.at(1),
               "1 stiff bond of branched chains closes a cycle of links (particles 0 and 3 from 0) "
-              "and stays a force: links form no cycles.");
+              "and stays a force: only constraints become cross-links.");
+}
+
+/// Nothing but a link holds what a constraint holds.
+TEST_F(Import, ConstraintsThatCloseCyclesBecomeCrossLinks) {
+    join_glycines();
+    for (int k = 1; k < 4; ++k) system->addConstraint(k - 1, k, 0.4);
+    system->addConstraint(3, 0, 0.5);
+    ImportedSystem const imported = import(wound(beads, 1));
+    ASSERT_TRUE(imported.chains[0].parent.empty());
+    EXPECT_EQ(imported.chains[0].crosslinks, (std::vector<CrossLink>{{0, 3, 0.5}}));
+    EXPECT_TRUE(imported.chains[1].crosslinks.empty());
+    EXPECT_EQ(imported.notes,
+              std::vector<std::string>{
+                  "1 constraint of chain A closes a cycle of links and becomes a cross-link: "
+                  "cross-linked chains are computed on the host, each by one rank."});
 }
 
 /// A constraint that is no link could not stay: it outranks the spring to the bead before.

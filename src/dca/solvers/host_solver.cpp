@@ -1,4 +1,5 @@
 // The selection of the host solver of a group of chains.
+#include "dca/solvers/crosslinked_solver.hpp"
 #include "dca/solvers/joint_solver.hpp"
 
 namespace catena {
@@ -21,6 +22,9 @@ std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor 
                                               Communicator const& communicator) {
     if (group.handles == Handles::articulated)
         return dca::make_articulated_solver(group, executor, communicator);
+    if (!group.crosslinks.empty())
+        return std::make_unique<dca::CrossLinkedSolver>(
+            group, executor, dca::make_branched_solver(group, executor, communicator));
     if (group.is_branched()) return dca::make_branched_solver(group, executor, communicator);
     if (group.beads) return dca::make_bead_solver(group, executor, communicator);
     if (group.axes == Axes::world) return dca::make_absolute_solver(group, executor, communicator);

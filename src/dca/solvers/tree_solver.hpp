@@ -40,7 +40,7 @@ class TreeSolver final : public ChainSolver {
           schedule_(group.schedule),
           space_(space),
           communicator_(communicator),
-          model_(group),
+          model_(space.model(group)),
           tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots,
                 group.restricted_of_joint, Sweeps::in_stage),
           top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots,

@@ -62,7 +62,7 @@ struct RevolutesInRuns {
 /// Terms that the solver computes from velocities itself. gyroscopic: the gyroscopic torque, if it
 /// is the only torque (LoadsView::gyroscopic). biases: those of revolute joints
 /// (LoadsView::revolute_rate). motions: those within runs (RevoluteLoads); the update computes the
-/// joints' relative motions, and steps need not (JointDynamicsIn::follow_revolutes).
+/// joints' relative motions, and steps need not (joint_updates.hpp).
 struct LeftToSolver {
     bool gyroscopic = false, biases = false, motions = false;
 };

@@ -15,6 +15,10 @@ enum class JointOperator : std::uint8_t {
     /// Computes accelerations with the current velocities, but with the coordinates, forces on
     /// beads and matrices of the last `evaluate`.
     evaluate_again,
+    /// Assembles the matrices at the last updated configuration, as part of an evaluation.
+    assemble,
+    /// Computes the rates of the last solution (JointDynamics::rates()).
+    set_rates,
     /// Keeps the accelerations for `kick_saved`, `kick_mean` and `drift_saved`, also in the next
     /// step.
     save,
@@ -32,21 +36,15 @@ enum class JointOperator : std::uint8_t {
     /// Replaces part of the velocities by random ones (Thermostat).
     noise,
     /// Stage of an explicit Runge-Kutta scheme that keeps one weighted sum of rates.
-    accumulate
-};
-
-/// One operator of a step. Durations are the step's length divided by a number.
-struct JointOperation {
-    JointOperator what = JointOperator::evaluate;
-    /// Duration: step / divisor. Of `accumulate`: the weight of the rates in the sum.
-    double divisor = 1;
-    /// Of `accumulate`: the next stage's state is the start's plus step / next times the rates.
-    double next = 1;
-    /// Of `accumulate`: the first stage sets the sum, the last one makes it the state.
-    bool first = false, last = false;
-    /// Of `noise`: the thermostat, and the step that keys the noise.
-    Thermostat thermostat = {};
-    std::uint64_t number = 0;
+    accumulate,
+    /// Stage of an embedded pair (JointOperation::stage). The start of the step is kept, so that it
+    /// can be repeated.
+    embedded_stage,
+    /// Newton step that closes jointed tips. The correction is the smallest in the metric of the
+    /// masses. Precondition: there are jointed tips.
+    project,
+    /// Counterpart of `project` for the velocities of jointed tips.
+    project_velocities
 };
 
 /// A stage of an embedded Runge-Kutta pair: the rates of stages 0 to `number`, each with a weight,
@@ -64,6 +62,22 @@ struct EmbeddedStage {
 /// the step.
 struct EmbeddedDifference {
     double weight[EmbeddedStage::stages + 1] = {};
+};
+
+/// One operator of a step. Durations are the step's length divided by a number.
+struct JointOperation {
+    JointOperator what = JointOperator::evaluate;
+    /// Duration: step / divisor. Of `accumulate`: the weight of the rates in the sum.
+    double divisor = 1;
+    /// Of `accumulate`: the next stage's state is the start's plus step / next times the rates.
+    double next = 1;
+    /// Of `accumulate`: the first stage sets the sum, the last one makes it the state.
+    bool first = false, last = false;
+    /// Of `noise`: the thermostat, and the step that keys the noise.
+    Thermostat thermostat = {};
+    std::uint64_t number = 0;
+    /// Of `embedded_stage`.
+    EmbeddedStage stage = {};
 };
 
 }  // namespace catena

@@ -189,12 +189,12 @@ double JointSolution::residual(Communicator const& communicator, Executor const&
     return communicator.max(worst);
 }
 
-JointSolution::Defect JointSolution::defect(Communicator const& communicator,
-                                            Executor const& executor) const {
+JointDefect JointSolution::defect(Communicator const& communicator,
+                                  Executor const& executor) const {
     std::int64_t const tips = group.has_tips() ? group.size : 0;
-    Defect d{Field<3>(group.size), Field<3>(group.size),
-             DirectionsField(group.size + 1, group.directions),
-             DirectionsField(tips, group.directions)};
+    JointDefect d{Field<3>(group.size), Field<3>(group.size),
+                  DirectionsField(group.size + 1, group.directions),
+                  DirectionsField(tips, group.directions)};
     Vector<double, 8> const before_first = handle_before_first(communicator);
     auto const at_tips = handles_at_tips(communicator);
     executor.for_each(group.size, [&](std::int64_t k) {

@@ -6,6 +6,13 @@
 
 namespace catena {
 
+/// Residuals of the equations of bodies and joints, as loads for the solver. The solver's response
+/// to them is minus the error of the solution.
+struct JointDefect {
+    Field<3> torque, force;
+    DirectionsField bias, tip_bias;
+};
+
 /// Motion, loads and solution of a rank's bodies, with results and residuals computed from them. B
 /// axes unless stated otherwise.
 struct JointSolution {
@@ -22,6 +29,8 @@ struct JointSolution {
     ConstView<3> bead_force;
     ConstDirectionsView bias, joint_force, tip_bias, tip_force;
     ConstView<6> compliance;  // Compliance of implicit joints (ConfigurationView::compliance).
+    /// What the last refinement has added to `alpha` and `acceleration`; no origin without one.
+    ConstView<3> change_of_alpha{}, change_of_acceleration{};
 
     /// Accelerations and joint forces for output, W. Collective.
     BodyResults results(Communicator const&) const;
@@ -29,13 +38,8 @@ struct JointSolution {
     /// closing of every joint, each relative to the sizes of its own terms (src/dca/README.md,
     /// "Residuals"). Collective.
     double residual(Communicator const&, Executor const&) const;
-    /// Residuals of the equations of bodies and joints, as loads for the solver. The solver's
-    /// response to them is minus the error of the solution. Collective.
-    struct Defect {
-        Field<3> torque, force;
-        DirectionsField bias, tip_bias;
-    };
-    Defect defect(Communicator const&, Executor const&) const;
+    /// Residuals of the equations of bodies and joints. Collective.
+    JointDefect defect(Communicator const&, Executor const&) const;
 
   private:
     /// Adds the constraint forces across the plane of planar chains. Collective.

