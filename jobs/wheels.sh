@@ -65,11 +65,16 @@ build_wheel() {
     local version env raw options
     version=$("$1" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
     env=$work/build-$version raw=$work/raw-$version
-    step "wheel-$version-tools" environment "$env" "$1" "${tools[@]}" "openmm==$openmm"
+    step "wheel-$version-tools" environment "$env" "$1" "${tools[@]}"
+    if [ -z "${OPENMM_DIR:-}" ]; then
+        # One for all: the compiler's commands are the same for all wheels, and ccache has their results.
+        step wheel-openmm environment "$env" "$1" "openmm==$openmm"
+        OPENMM_DIR=$("$env/bin/python" -c 'import sysconfig; print(sysconfig.get_paths()["platlib"])')/OpenMM.libs
+        export OPENMM_DIR
+    fi
     rm -rf "$raw"
     options=(-C "cmake.define.CATENA_WITH_OPENMM=ON" -C "cmake.define.CATENA_WITH_HDF5=ON" -C "cmake.define.CATENA_WITH_GEMMI=ON" -C "cmake.define.CATENA_WITH_OPENMP=ON"
-             -C "cmake.define.CATENA_ARCH=x86-64-v3")
-    # scikit-build-core and nanobind are the environment's: OpenMM is found there, too.
+             -C "cmake.define.CATENA_ARCH=x86-64-v3" -C "cmake.define.CATENA_PYTHON_PORTABLE=ON")
     PATH=$env/bin:$PATH step "wheel-$version-build" env CMAKE_BUILD_PARALLEL_LEVEL="$(build_jobs)" "$env/bin/pip" wheel -q --no-build-isolation --no-deps \
         --disable-pip-version-check "${options[@]}" -w "$raw" src/python
     PATH=$env/bin:$PATH step "wheel-$version-repair" "$env/bin/auditwheel" repair --exclude libOpenMM.so -w "$output" "$raw"/catena-*.whl
@@ -89,6 +94,7 @@ try_wheels() {
     return $status
 }
 
+unset OPENMM_DIR
 openmm=$(sed -n 's/^openmm==//p' jobs/requirements.txt)
 if [ ${#pythons[@]} -eq 0 ]; then
     for version in 3.10 3.11 3.12; do
