@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -164,12 +165,12 @@ class Chains {
 
 void check_distances(std::vector<Constraint> const& constraints) {
     for (std::size_t i = 0; i < constraints.size(); ++i)
-        if (!(constraints[i].distance > 0))
+        if (!(constraints[i].distance > 0) || !std::isfinite(constraints[i].distance))
             throw InputError(
                 fmt::format("a constraint to the distance {} nm", constraints[i].distance),
                 fmt::format("System, particles {} and {}", constraints[i].first,
                             constraints[i].second),
-                "give a positive distance");
+                "give a positive, finite distance");
 }
 
 }  // namespace

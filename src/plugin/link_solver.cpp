@@ -19,6 +19,10 @@ namespace {
 constexpr double enough = 1e-12;
 /// Largest number of sweeps, as many as OpenMM's CCMA permits itself.
 constexpr int most_sweeps = 150;
+/// What to do about a step that fails.
+constexpr char const* remedy =
+    "call applyConstraints of the Context if its positions are new, minimise the energy, or take a "
+    "smaller step";
 
 /// Constraints of the chains of one group.
 class GroupLinks {
@@ -79,7 +83,10 @@ class LinksOf final : public GroupLinks {
         solver_->solve({{}, momentum_.view(), {}, {}, {}}, {{}, change_.view(), {}, {}});
         double const size = space_.largest(
             group_.size, [&](std::int64_t k) -> double { return norm(change_.view().load(k)); });
-        if (!std::isfinite(size)) throw ComputationError("velocities are no longer finite");
+        if (!std::isfinite(size))
+            throw ComputationError(
+                "velocities are no longer finite: set other velocities, minimise the energy, or "
+                "take a smaller step");
         space_.for_each(group_.size,
                         [&](std::int64_t k) { velocities[particle(k)] = change_.view().load(k); });
     }
@@ -117,8 +124,15 @@ class LinksOf final : public GroupLinks {
         Chains const c = chains();
         space_.for_each(group_.size, [c](std::int64_t k) { c.set_direction(k); });
         space_.for_each(std::ssize(tip_), [c](std::int64_t i) { c.set_tip_direction(i); });
-        solver_->assemble_matrices(
-            {direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}});
+        try {
+            solver_->assemble_matrices({direction_.view(),
+                                        {},
+                                        group_.has_tips() ? tip_direction_.view() : View<3>{},
+                                        {},
+                                        {}});
+        } catch (ComputationError const&) {
+            refuse_positions();
+        }
     }
     /// Sets the biases to the length errors at position_. Returns the largest relative one, NaN if
     /// a position is.
@@ -144,7 +158,8 @@ class LinksOf final : public GroupLinks {
             x.store(k, x.load(k) + d.load(k));
         });
     }
-    /// Repeats sweep() until the links are closed.
+    /// Repeats sweep() until the links are closed to `enough` or to rounding, also if `tolerance`
+    /// asks for less.
     template <class Sweep>
     void repeat(double tolerance, Sweep const& sweep) {
         double before = std::numeric_limits<double>::infinity();
@@ -152,8 +167,8 @@ class LinksOf final : public GroupLinks {
             ring_ends_.take(position_.view(), position_.view());
             double const error = measure();
             if (error <= std::min(enough, tolerance)) return;
-            if (!std::isfinite(error)) throw ComputationError("positions are no longer finite");
-            if (error > before / 2 && error <= std::max(tolerance, rounding())) return;
+            if (!std::isfinite(error)) refuse_positions();
+            if (error > before / 2 && error <= rounding()) return;
             if (sweeps == most_sweeps) refuse(error);
             before = error;
             sweep();
@@ -172,10 +187,28 @@ class LinksOf final : public GroupLinks {
         Chains const c = chains();
         for (std::int64_t k = 0; k < group_.size; ++k)
             if (c.error(k) > c.error(worst)) worst = k;
-        throw ComputationError(fmt::format(
-            "constraints stay open by {:.1e} of their length after {} sweeps (near particle {}): "
-            "take a smaller step, or minimise the energy first",
-            error, most_sweeps, particle(worst)));
+        throw ComputationError(
+            fmt::format("constraints stay open by {:.1e} of their length after {} sweeps (near "
+                        "particle {}): {}",
+                        error, most_sweeps, particle(worst), remedy));
+    }
+    /// Throws ComputationError for positions at which the matrices do not exist.
+    [[noreturn]] void refuse_positions() {
+        Chains const c = chains();
+        for (std::int64_t k = 0; k < group_.size; ++k) {
+            double const size = norm(position_.view().load(k));
+            if (!std::isfinite(size))
+                throw ComputationError(fmt::format(
+                    "positions are no longer finite (particle {}): {}", particle(k), remedy));
+            if (c.linked(k) && !(norm(c.link(k)) > 0))
+                throw ComputationError(
+                    fmt::format("particles {} and {}, which a constraint joins, coincide: set "
+                                "other positions",
+                                particle(c.places.inboard(k)), particle(k)));
+        }
+        throw ComputationError(
+            "constraints depend on each other at these positions, as where particles coincide or a "
+            "ring is stretched straight: set other positions");
     }
     Chains chains() {
         Chains c;

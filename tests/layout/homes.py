@@ -38,7 +38,7 @@ LARGER = {
     "BodyArrays": (49, 21),
     "CalvadosComponent": (29, 22),
     "ChainGroup": (146, 50),
-    "ChainReader": (284, 7),
+    "ChainReader": (263, 7),
     "DeviceSpace": (347, 5),
     "DeviceTree": (292, 11),
     "FrameStart": (263, 9),

@@ -443,8 +443,33 @@ class WithOpenMM(Case):
         with self.assertRaisesRegex(openmm.OpenMMException, "ChainVerletIntegrator: constraints stay open .*take a smaller step"):
             integrator.step(1)
         here.setVelocities(np.full((4, 3), np.nan))
-        with self.assertRaisesRegex(openmm.OpenMMException, "no longer finite"):
+        with self.assertRaisesRegex(openmm.OpenMMException, r"no longer finite \(particle 0\): .*take a smaller step"):
             integrator.step(1)
+
+    def test_lengths_are_exact_whatever_the_tolerance(self):
+        system = make_system(chain_parents(5), masses=[10.0] * 5)
+        integrator = ChainLangevinIntegrator(300, 1, 0.1)  # Sweeps converge slowly.
+        integrator.setRandomNumberSeed(2)
+        integrator.setConstraintTolerance(1e-3)
+        here = context(system, integrator, walk(chain_parents(5)))
+        worst = 0.0
+        for _ in range(200):
+            integrator.step(1)
+            worst = max(worst, constraint_error(system, positions(here)))
+        self.assertLess(worst, 1.0001e-12)
+
+    def test_positions_without_matrices_are_named(self):
+        straight, _ = ring(4)
+        straight.setConstraintParameters(3, *straight.getConstraintParameters(3)[:2], 3 * LENGTH)
+        line = LENGTH * np.arange(4.0)[:, None] * [1, 0, 0]
+        chain = make_system(chain_parents(4))
+        for system, x, pattern in ((chain, np.zeros((4, 3)), "particles [01] and [12], which a constraint joins, coincide: set other positions"),
+                                   (chain, line + [np.nan, 0, 0], r"positions are no longer finite \(particle 0\): call applyConstraints"),
+                                   (straight, line, "depend on each other at these positions, .*stretched straight: set other positions")):
+            here = openmm.Context(system, ChainVerletIntegrator(STEP), openmm.Platform.getPlatform("Reference"))
+            here.setPositions(x)
+            with self.assertRaisesRegex(openmm.OpenMMException, f"ChainVerletIntegrator: .*{pattern}"):
+                here.getIntegrator().step(1)
 
 
 class Refused(Case):
@@ -467,14 +492,18 @@ class Refused(Case):
 
     def test_distances_that_are_none(self):
         system = make_system([-1, 0])
-        system.setConstraintParameters(0, 0, 1, 0.0)
-        self.refuse(system, "distance 0 nm .*positive")
+        for distance in (0.0, -0.1, float("inf")):
+            system.setConstraintParameters(0, 0, 1, distance)
+            self.refuse(system, f"distance {distance:g} nm .*positive, finite")
 
     def test_numbers_that_openmm_refuses(self):
         with self.assertRaisesRegex(openmm.OpenMMException, "Temperature cannot be negative"):
             ChainLangevinIntegrator(-1, 1, 0.01)
         with self.assertRaises(TypeError):
             ChainLangevinIntegrator(300 * unit.nanometer, 1, 0.01)
+        for numbers in (("300", 1, 0.01), (float("nan"), 1, 0.01), (300, float("inf"), 0.01), (300, 1, float("nan") * unit.picosecond)):
+            with self.assertRaisesRegex(catena.InputError, r"\(catena.openmm\): give a finite number, or a quantity"):
+                ChainLangevinIntegrator(*numbers)
 
 
 class OnDevices(Case):

@@ -27,7 +27,8 @@ def frames_of(
     positions: Any, chains: Any, *, masses: Any, residues: Any, box: Any, times: Any, ring: bool
 ) -> Frames:
     """Returns frames of an array, an atom group or a ``Record``. Raises InputError for what does not fit."""
-    if hasattr(positions, "topology") and isinstance(positions.topology, _core.Topology):
+    positions = atoms_of(positions)
+    if is_record(positions):
         given = [name for name, value in (("chains", chains), ("masses", masses), ("residues", residues), ("box", box), ("times", times)) if value is not None]
         if given or ring:
             raise InputError(f"a record knows its chains, masses and box ({(given or ['ring'])[0]}): leave this argument out")
@@ -46,13 +47,32 @@ def frames_of(
     edges = None if box is None else _edges_of(box, n_frames)
     counts = _counts_of(chains, n_beads)
     notes: list[str] = []
+    parents = _parents_of(positions, counts, notes) if is_group(positions) else []
     if times is not None:
         times = _row(times, n_frames, "times", "frames")
     _require_whole(x, counts, edges)
     topology = _core.Topology.of(
-        [(f"chain-{number + 1}", count) for number, count in enumerate(counts)], ring, masses.tolist(), names, None if edges is None else tuple(edges[0]), False
+        [(f"chain-{number + 1}", count) for number, count in enumerate(counts)], ring, masses.tolist(), names, None if edges is None else tuple(edges[0]), False, parents
     )
     return Frames(topology, x, edges, _unless_wrapped(x, counts, edges, times, notes), notes)
+
+
+def is_record(positions: Any) -> bool:
+    """True for a ``Record``."""
+    return hasattr(positions, "topology") and isinstance(positions.topology, _core.Topology)
+
+
+def atoms_of(positions: Any) -> Any:
+    """Returns the atoms of a universe of MDAnalysis, and anything else as it is."""
+    return positions.atoms if hasattr(positions, "atoms") and hasattr(positions, "trajectory") else positions
+
+
+def require_one_chain(positions: Any, name: str) -> None:
+    """Raises InputError for records and atom groups of several chains, of which ``name`` is no number."""
+    positions = atoms_of(positions)
+    chains = len(positions.topology.chains) if is_record(positions) else len(positions.segments) if is_group(positions) else 1
+    if chains > 1:
+        raise InputError(f"the positions are those of {chains} chains ({name}): take analyse(...)[{name!r}], or the positions of one chain")
 
 
 def is_group(positions: Any) -> bool:
@@ -62,19 +82,28 @@ def is_group(positions: Any) -> bool:
 
 def positions_of(positions: Any) -> np.ndarray:
     """Returns positions (n_frames, n_beads, 3) in nm. Raises InputError for other shapes and numbers that are not finite."""
+    positions = atoms_of(positions)
     if is_group(positions):
+        if not len(positions):
+            raise InputError("the atom group is empty (positions): select atoms")
         trajectory = positions.universe.trajectory
         return doubles(np.array([positions.positions for _ in trajectory], dtype=float) / 10, 3, "positions")
-    if hasattr(positions, "topology") and hasattr(positions, "positions"):
+    if is_record(positions):
+        if not len(positions):
+            raise InputError("the record has no frames (record): take steps of its simulation first")
         positions = positions.positions
-    if np.ndim(positions) == 2:
+    if isinstance(positions, np.ndarray) and positions.ndim == 2:
         raise InputError("the positions have 2 dimensions (positions): give (n_frames, n_beads, 3); a frame x is x[None]")
     return doubles(positions, 3, "positions")
 
 
 def doubles(values: Any, dimensions: int, name: str) -> np.ndarray:
     """Returns an array of doubles. Raises InputError for other dimensions and numbers that are not finite."""
-    array = np.ascontiguousarray(values, dtype=float)
+    try:
+        array = np.ascontiguousarray(values, dtype=float)
+    except (TypeError, ValueError):
+        kind = "an array of numbers, an atom group or a Record" if name == "positions" else "an array of numbers"
+        raise InputError(f"the {name} are of the type {type(values).__name__} ({name}): give {kind}") from None
     if array.ndim != dimensions:
         raise InputError(f"the {name} have {array.ndim} dimensions ({name}): give an array with {dimensions}")
     if not np.isfinite(array).all():
@@ -101,6 +130,31 @@ def _of_group(group: Any, chains: Any, masses: Any, residues: Any, box: Any, tim
     if times is None:
         times = [time for time, _ in cells]
     return chains, masses, residues, box, times
+
+
+def _parents_of(group: Any, counts: list[int], notes: list[str]) -> list[list[int]]:
+    """Returns the bead on which each bead of a branched chain hangs, by the bonds of an atom group; nothing for other chains.
+
+    Notes chains whose bonds do not tell.
+    """
+    bonds = getattr(group, "bonds", None) if hasattr(group.universe, "bonds") else None
+    if bonds is None or not len(bonds):
+        return []
+    place = {int(index): number for number, index in enumerate(group.indices)}
+    chain_of = np.repeat(np.arange(len(counts)), counts)
+    lower: list[list[int]] = [[] for _ in chain_of]
+    for a, b in bonds.indices:
+        first, last = sorted((place.get(int(a), -1), place.get(int(b), -1)))
+        if first >= 0 and chain_of[first] == chain_of[last]:
+            lower[last].append(first)
+    parents: list[list[int]] = []
+    for number, (begin, count) in enumerate(zip(np.cumsum([0, *counts]).tolist(), counts)):
+        on = [max(each) - begin if each else -1 for each in lower[begin : begin + count]]
+        is_tree = -1 not in on[1:]
+        parents.append(on if is_tree and on[1:] != list(range(count - 1)) else [])
+        if not is_tree and any(each >= 0 for each in on) and len(notes) < 10:
+            notes.append(f"the bonds of chain {number + 1} do not join its atoms one after the other: separations and bonds follow the order of the atoms")
+    return parents
 
 
 def _row(values: Any, count: int, name: str, of: str) -> np.ndarray:

@@ -10,6 +10,7 @@ water stays with SETTLE. All else is OpenMM's: states, forces, reporters, checkp
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -35,8 +36,12 @@ except InputError as error:
 __all__ = ["ChainLangevinIntegrator", "ChainVerletIntegrator", "prepared"]
 
 
-def _number(value: Any, in_unit: unit.Unit) -> float:
-    return float(value.value_in_unit(in_unit) if unit.is_quantity(value) else value)
+def _number(value: Any, in_unit: unit.Unit, name: str) -> float:
+    """Returns a number in a unit. Raises InputError for texts and for numbers that are not finite."""
+    number = value.value_in_unit(in_unit) if unit.is_quantity(value) else value
+    if isinstance(number, (str, bytes)) or not math.isfinite(number):
+        raise InputError(f"the {name} is {value!r} (catena.openmm): give a finite number, or a quantity")
+    return float(number)
 
 
 def _made_of(name: str, **properties: float) -> openmm.Integrator:
@@ -57,9 +62,9 @@ class ChainLangevinIntegrator(openmm.LangevinMiddleIntegrator):
     def __init__(self, temperature: Any, friction: Any, step: Any) -> None:
         made = _made_of(
             "ChainLangevinIntegrator",
-            temperature=_number(temperature, unit.kelvin),
-            friction=_number(friction, unit.picosecond**-1),
-            stepSize=_number(step, unit.picosecond),
+            temperature=_number(temperature, unit.kelvin, "temperature (K)"),
+            friction=_number(friction, unit.picosecond**-1, "friction (1/ps)"),
+            stepSize=_number(step, unit.picosecond, "step (ps)"),
             randomSeed=0,
         )
         self.this = made.this
@@ -69,7 +74,7 @@ class ChainVerletIntegrator(openmm.VerletIntegrator):
     """OpenMM's VerletIntegrator, with constraints solved as by ChainLangevinIntegrator. The step is in ps."""
 
     def __init__(self, step: Any) -> None:
-        self.this = _made_of("ChainVerletIntegrator", stepSize=_number(step, unit.picosecond)).this
+        self.this = _made_of("ChainVerletIntegrator", stepSize=_number(step, unit.picosecond, "step (ps)")).this
 
 
 @contextlib.contextmanager
