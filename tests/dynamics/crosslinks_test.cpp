@@ -150,7 +150,7 @@ void expect_dense(ChainSpec const& chain, std::uint64_t seed, Backend backend) {
     SceneMotion const s = trees.system->snapshot();
     DenseNetwork const dense(chain, s.position);
     EXPECT_EQ(dense.redundant(), chain.redundant_links);
-    double const tolerance = std::max(1e-12, 4e-15 * dense.condition());
+    double const tolerance = std::max(1e-11, 1e-14 * dense.condition());
     std::vector<Vec3> expected;
     Column const along = dense.forces(s.velocity, forces, expected);
     ChainSystem::Accelerations const found = trees.system->accelerations();
