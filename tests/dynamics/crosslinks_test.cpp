@@ -139,7 +139,7 @@ ChainSpec cross_linked(std::uint64_t seed, ChainSpec chain, std::size_t count) {
     return chain;
 }
 
-/// Compares an evaluation of one chain with the dense matrix of its links. The tolerance is 1e-12
+/// Compares an evaluation of one chain with the dense matrix of its links. The tolerance is 1e-11
 /// of the largest acceleration and tension, more where the matrix is ill-conditioned.
 void expect_dense(ChainSpec const& chain, std::uint64_t seed, Backend backend) {
     Trees trees({chain}, solver_of(backend));
