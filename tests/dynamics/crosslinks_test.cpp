@@ -185,6 +185,19 @@ TEST(CrossLinks, AreWhatTheDenseMatrixOfAllLinksSays) {
     EXPECT_GT(redundant, 0);
 }
 
+/// Five beads with all ten links between them have one more than they can need.
+TEST(CrossLinks, OfFiveBeadsAreSoWhereTheyAreRedundant) {
+    int redundant = 0;
+    for (std::uint64_t seed = 0; seed < 300; ++seed) {
+        ChainSpec const chain =
+            cross_linked(seed, grown(seed, random_parents(seed, 5, 0.7), Base::free), 6);
+        redundant += chain.redundant_links > 0 ? 1 : 0;
+        expect_dense(chain, seed, Backend::segments);
+        if (HasFailure()) FAIL() << "seed " << seed;
+    }
+    EXPECT_GT(redundant, 50);
+}
+
 TEST(CrossLinks, OfManyBeadsAreSo) {
     for (Base const base : {Base::free, Base::fixed})
         for (Backend const backend : {Backend::segments, Backend::serial}) {
