@@ -219,6 +219,7 @@ class ChainReader {
         first.name = count_ == 1 ? name : name + "-1";
         drafts.push_back({std::move(first), &request_.node, free_to_move, shape, first_particle});
         if (is_rna(request_)) drafts.back().excluded = excluded_of_nucleotides;
+        drafts.back().open_crosslinks = open_crosslinks_;
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
@@ -230,6 +231,7 @@ class ChainReader {
             drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move,
                               shape, request_.particle});
             drafts.back().excluded = drafts[at].excluded;
+            drafts.back().open_crosslinks = open_crosslinks_;
             drafts.back().chain.name = copy_name;
         }
         drafts.back().bytes = bytes;
@@ -333,7 +335,7 @@ class ChainReader {
 
     /// Adds the entry's cross-links. Where the System joins two beads its length counts, unless the
     /// entry gives one or has `links: as_given`.
-    void cross_link(ChainSpec& chain, std::int64_t copy) const {
+    void cross_link(ChainSpec& chain, std::int64_t copy) {
         Node const* const node = request_.fields.find("crosslinks");
         if (!node) return;
         chain.crosslinks = read_crosslinks(*node, chain);
@@ -344,6 +346,8 @@ class ChainReader {
                         request_.particle + link.inboard, request_.particle + link.outboard);
                     length > 0)
                     link.length = length;
+        open_crosslinks_.clear();
+        for (CrossLink const& link : chain.crosslinks) open_crosslinks_.push_back(link.length == 0);
         bool const far = source_.key != "bodies" && !is_given();
         fit_crosslinks(chain, {request_.scene, *node, far, copy > 0});
     }
@@ -421,6 +425,8 @@ class ChainReader {
     bool warm_;
     /// Tip of all copies.
     ReadTip tip_;
+    /// Draft::open_crosslinks of the copy made last.
+    std::vector<bool> open_crosslinks_;
     /// Number of copies.
     std::int64_t count_ = 1;
     /// The concentration that decides the number of copies, or nullptr.
