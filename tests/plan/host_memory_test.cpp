@@ -85,10 +85,10 @@ TEST(HostMemory, OfAWholeChainIsNotShared) {
             command::memory_of(parse_scene("chains: [{" + chain + "}]\n", "scene.yaml", {}), ranks);
         return memory.state + memory.solver;
     };
-    std::string const star = "generator: {star: {arms: 4, arm_length: 500}}";
+    std::string const star = "generator: {star: {arms: 4, arm_length: 500, length: 0.5}}";
     EXPECT_EQ(of(star, 4), of(star, 1));
     EXPECT_NEAR(of(star + ", count: 4", 2), of(star + ", count: 4", 1) / 2, 1);
-    std::string const plain = "generator: {freely_jointed: {beads: 2000}}";
+    std::string const plain = "generator: {freely_jointed: {beads: 2000, length: 0.5}}";
     EXPECT_NEAR(of(plain, 4), of(plain, 1) / 4, 1);
 }
 
