@@ -9,6 +9,7 @@
 #include "dynamics/body_loads.hpp"
 #include "joints/joint_models.hpp"
 #include "math/rotation.hpp"
+#include "scene/branch_limits.hpp"
 
 namespace catena::command {
 namespace {
@@ -205,6 +206,8 @@ std::string not_for_peers(Scene const& scene) {
     ChainSpec const& chain = scene.chains.front();
     if (chain.tip != Tip::free) return "a closed chain";
     if (chain.is_linked()) return "beads and rigid bodies on links in one chain";
+    if (scene::goes_by_paths(chain))
+        return std::string("a ") + scene::kind_of_paths(chain) + " chain";
     if (chain.is_beads()) return chain.base == Base::free ? "" : "beads fixed to the ground";
     if (!std::all_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), among))
         return "joints neither revolute nor spherical";

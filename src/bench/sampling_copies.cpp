@@ -12,6 +12,7 @@
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
 #include "reader/load_scene.hpp"
+#include "scene/branch_limits.hpp"
 #include "structure/calvados2.hpp"
 #include "terms/force_terms.hpp"
 
@@ -43,8 +44,10 @@ void require_one_plain_chain(Scene const& scene, std::int64_t copies) {
     if (!chain.is_beads() || chain.base != Base::free || chain.tip != Tip::free || chain.size() < 4)
         refuse("bench sampling takes a free chain of 4 beads or more",
                "name a scene such as inputs/alpha-synuclein.yaml");
-    if (chain.is_branched())
-        refuse("bench sampling takes an unbranched chain",
+    if (scene::goes_by_paths(chain))
+        refuse(fmt::format("bench sampling takes a chain without branches and cross-links, not a "
+                           "{} one",
+                           scene::kind_of_paths(chain)),
                "name a scene such as inputs/alpha-synuclein.yaml");
     if (!scene.forces.openmm || scene.forces.openmm->builder.empty())
         refuse("bench sampling takes forces of CALVADOS 2 or 3, whose bonds OpenMM then computes",

@@ -96,39 +96,51 @@ std::string tree_text(ChainGroup const& group) {
                        dca::tree_table_version);
 }
 
+/// Cross-links of a group's chains, whichever ranks have them.
+struct CrossLinkCounts {
+    std::size_t all = 0, most_of_a_chain = 0;
+};
+CrossLinkCounts crosslinks_of(ChainGroup const& group, Scene const& scene) {
+    CrossLinkCounts counts;
+    for (int const chain : group.chain) {
+        std::size_t const own = scene.chains[static_cast<std::size_t>(chain)].crosslinks.size();
+        counts.all += own;
+        counts.most_of_a_chain = std::max(counts.most_of_a_chain, own);
+    }
+    return counts;
+}
+
 /// What the chains of a group are called, with a blank: "branched ", "cross-linked " or nothing.
-std::string chain_word(ChainGroup const& group) {
-    if (!group.crosslinks.empty()) return "cross-linked ";
+std::string chain_word(ChainGroup const& group, CrossLinkCounts const& crosslinks) {
+    if (crosslinks.all > 0) return "cross-linked ";
     return group.is_branched() ? "branched " : "";
 }
 
 /// Describes the cost of cross-links.
-std::string crosslinks_text(ChainGroup const& group) {
-    std::int64_t most = 0, here = 0;
-    for (std::size_t c = 0; c < group.crosslinks.size(); ++c) {
-        bool const same = c > 0 && group.crosslinks[c].piece == group.crosslinks[c - 1].piece;
-        here = same ? here + 1 : 1;
-        most = std::max(most, here);
-    }
+std::string crosslinks_text(CrossLinkCounts const& crosslinks) {
+    std::size_t const most = crosslinks.most_of_a_chain;
     return fmt::format(
         "{}, up to {} a chain: after each matrix sweep {} for their responses and systems of up to "
         "{} x {}; bias sweeps are made twice",
-        std::ssize(group.crosslinks), most, counted(most, "bias sweep", "bias sweeps"), most, most);
+        crosslinks.all, most, counted(static_cast<std::int64_t>(most), "bias sweep", "bias sweeps"),
+        most, most);
 }
 
 /// Adds the description of a group: blocks, tree, units, collectives and memory.
-void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport const& report) {
+void add_group(Text& text, Json& list, ChainGroup const& group, Scene const& scene,
+               SolverReport const& report) {
+    CrossLinkCounts const crosslinks = crosslinks_of(group, scene);
+    std::string const word = chain_word(group, crosslinks);
     dca::ChainTree const& tree = longest_tree(group);
     Rounds const rounds = rounds_of(group);
     std::vector<std::int64_t> const shares = shares_of(group);
     text.heading(fmt::format("{} of {} ({})",
-                             counted(group.partition.chains(), chain_word(group) + "chain",
-                                     chain_word(group) + "chains"),
+                             counted(group.partition.chains(), word + "chain", word + "chains"),
                              group.beads ? "beads on links" : "bodies", group.kind()));
     text.entry("blocks", block_text(group.beads, group.directions, group.handles));
     TreeCounts const counts = counts_of(group);
     text.entry("tree", tree_text(group));
-    if (!group.crosslinks.empty()) text.entry("cross-links", crosslinks_text(group));
+    if (crosslinks.all > 0) text.entry("cross-links", crosslinks_text(crosslinks));
     if (!group.is_branched())
         text.entry(
             "units",
@@ -152,7 +164,7 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
                     {"runs", counts.runs},
                     {"levels", counts.levels},
                     {"depth", counts.depth},
-                    {"crosslinks", group.crosslinks.size()},
+                    {"crosslinks", crosslinks.all},
                     {"units", group.is_branched() ? 1 : tree.units},
                     {"bodies_of_ranks", shares},
                     {"collectives",
@@ -383,7 +395,7 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
     Text text;
     add_backend(text, json, system, predictions.choice.reason);
     for (std::size_t i = 0; i < reports.size(); ++i)
-        add_group(text, json["groups"], *system.groups()[i], reports[i]);
+        add_group(text, json["groups"], *system.groups()[i], system.scene(), reports[i]);
     add_memory(text, json, scene, predictions, communicator.size());
     add_forces(text, json, system);
     add_dynamics(text, json, scene);

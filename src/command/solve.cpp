@@ -237,6 +237,12 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
     });
 }
 
+/// True if a chain has links, whose solutions are neither refined nor articulated.
+bool has_links(Scene const& scene) {
+    return std::any_of(scene.chains.begin(), scene.chains.end(),
+                       [](ChainSpec const& c) { return c.is_beads() || c.is_linked(); });
+}
+
 /// A solution and what is known about its errors.
 struct Solved {
     Solution solution;  // empty if nobody reads it
@@ -252,10 +258,11 @@ struct Solved {
     /// Returns the reason why the solution is not valid, with a remedy.
     std::string complaint(Scene const& scene) const {
         if (error.is_small() || !(residual <= bound))
-            return fmt::format(
-                "residual {:.2e}, bound {:.2e}: compare with --refine 2 or, for open chains on "
-                "joints, --handles articulated",
-                residual, bound);
+            return fmt::format("residual {:.2e}, bound {:.2e}: {}", residual, bound,
+                               has_links(scene) ? "compare with `catena report`, and look for "
+                                                  "masses that differ by many decades"
+                                                : "compare with --refine 2 or, for open chains on "
+                                                  "joints, --handles articulated");
         char const* const more = scene.solver.refine < 2 ? "--refine 2" : "more steps of --refine";
         return fmt::format("estimated error of the accelerations {:.1e}, bound {:.0e}: use {}",
                            *error.estimate, largest_forward_error,

@@ -233,14 +233,14 @@ CrossLink const* take_open_lengths(ChainSpec& chain, Node const& from) {
 }
 
 /// Notes what is particular in the links of a chain.
-void note_redundant(ChainSpec const& chain, Scene& scene) {
+void note_redundant(ChainSpec const& chain, Scene& scene, bool is_known) {
     std::int64_t const elsewhere = redundant_links(shaken(chain));
     if (std::int64_t const here = chain.redundant_links - elsewhere; here > 0)
         scene.note(fmt::format(
             "chain `{}` starts where {} of its links {} the others' lengths but would not "
-            "elsewhere, as in a flat or a stretched loop: give positions that are not so special",
-            shown(chain.name), here, here == 1 ? "follows from" : "follow from"));
-    if (elsewhere > 0)
+            "elsewhere, as in a flat or a stretched loop: {}",
+            shown(chain.name), here, here == 1 ? "follows from" : "follow from", special_note));
+    if (elsewhere > 0 && !is_known)
         scene.note(fmt::format(
             "{} of the {} links of chain `{}` {} redundant: {} no degree of freedom, and "
             "their tensions are the least of many that fit",
@@ -270,8 +270,8 @@ void close(ChainSpec& chain, CrossLink const& most, CrossLinkFit const& fit) {
     for (std::size_t k = 0; k < given.size(); ++k)
         moved = std::max(moved, norm(chain.beads.position[k] - given[k]));
     if (part >= noted_link_change && !fit.quiet)
-        fit.scene.note(fmt::format("{}: beads are moved by up to {:.3g} {} to close cross-links",
-                                   what, moved, unit));
+        fit.scene.note(fmt::format("{}: beads are moved by up to {:.3g} {} {}", what, moved, unit,
+                                   closing_note));
 }
 
 }  // namespace
@@ -291,7 +291,7 @@ bool project_links(ChainSpec const& chain, std::vector<Vec3>& positions) {
 void fit_crosslinks(ChainSpec& chain, CrossLinkFit const& fit) {
     if (CrossLink const* const most = take_open_lengths(chain, fit.from)) close(chain, *most, fit);
     chain.redundant_links = redundant_links(chain);
-    if (!fit.quiet) note_redundant(chain, fit.scene);
+    if (!fit.quiet) note_redundant(chain, fit.scene, fit.is_known);
 }
 
 }  // namespace catena::scene

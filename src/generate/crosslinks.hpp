@@ -18,6 +18,10 @@ std::int64_t redundant_links(ChainSpec const&);
 /// Returns false if that fails; the positions then have no meaning.
 bool project_links(ChainSpec const&, std::vector<Vec3>& positions);
 
+/// Ends of notes on how cross-links change a start, which other positions take back.
+inline constexpr char const *closing_note = "to close cross-links",
+                            *special_note = "give positions that are not so special";
+
 /// What fit_crosslinks() may do, and with whom it speaks.
 struct CrossLinkFit {
     Scene& scene;
@@ -27,6 +31,8 @@ struct CrossLinkFit {
     bool far = false;
     /// True if nothing is noted, as for further copies of a chain.
     bool quiet = false;
+    /// True if the links that are redundant in any position of such a chain have been noted.
+    bool is_known = false;
 };
 /// Gives cross-links without a length, those of length 0, the distance of their beads. Moves the
 /// beads where others have another length, and sets ChainSpec::redundant_links. Throws InputError

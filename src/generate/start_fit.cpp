@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "generate/cells.hpp"
+#include "generate/crosslinks.hpp"
 #include "generate/link_projection.hpp"
 #include "generate/nearest.hpp"
 #include "scene/force_changes.hpp"
@@ -122,7 +123,8 @@ class Units {
 void forget_fits(Scene& scene) {
     scene.start = {};
     std::erase_if(scene.notes, [](std::string const& note) {
-        return note.starts_with(moved_note) || note.ends_with(whole_note);
+        return note.starts_with(moved_note) || note.ends_with(whole_note) ||
+               note.ends_with(closing_note) || note.ends_with(special_note);
     });
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "generate/conformation.hpp"
 #include "place/region.hpp"
@@ -36,6 +37,9 @@ struct Draft {
     /// Distance that beads without a common link keep in packings, nm. The largest of all chains
     /// that grow in a box holds for all of them.
     double excluded = excluded_distance;
+    /// For each cross-link, true if its length is the distance of the start; empty if all have
+    /// lengths of their own.
+    std::vector<bool> open_crosslinks = {};
 };
 
 }  // namespace catena::scene

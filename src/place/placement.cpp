@@ -93,7 +93,7 @@ struct Lattice {
              (residues ? ", lower `count` or write `conformation: self_avoiding` (without "
                          "`positions`), which is packed more densely"
                        : " or lower `count`; only free chains of a `sequence` or "
-                         "`fasta` without `positions` are packed more densely"));
+                         "`fasta` without `positions` and cross-links are packed more densely"));
 }
 
 /// Width of the cells for single beads, which have no size: 1 nm, or what gives each a cell of a

@@ -53,6 +53,14 @@ bool is_linked_at_beads(LinkedArrays const& linked) {
     return true;
 }
 
+/// True if the lists hold the same cross-links, in any order.
+using CrossLinkEnds = std::vector<std::array<std::int64_t, 2>>;
+bool are_the_same(CrossLinkEnds a, CrossLinkEnds b) {
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    return a == b;
+}
+
 /// Beads of a chain, those of its rigid domains included, and the domains.
 struct Beads {
     BeadArrays arrays;
@@ -175,7 +183,7 @@ class FrameStart {
                      fmt::format("chain {}, `{}`, branches otherwise in `{}` than in the scene",
                                  c + 1, shown(chain.name), frame_.file),
                      "give a trajectory of the same chains");
-            if (other.crosslinks != ends_of_crosslinks(chain))
+            if (!are_the_same(other.crosslinks, ends_of_crosslinks(chain)))
                 fail(from,
                      fmt::format("chain {}, `{}`, has other cross-links in `{}` than in the scene",
                                  c + 1, shown(chain.name), frame_.file),
@@ -218,7 +226,7 @@ class FrameStart {
         std::size_t site = 0;
         for (Draft& draft : drafts_) {
             std::size_t const count = draft.chain.bead_count();
-            place(draft.chain, std::span(frame_.position).subspan(site, count), fit, box);
+            place(draft, std::span(frame_.position).subspan(site, count), fit, box);
             site += count;
         }
         fit.note();
@@ -228,8 +236,9 @@ class FrameStart {
                             "frame's positions: beads are up to {:.3g} nm from there ({})",
                             misfit_, misfit_at_));
     }
-    void place(ChainSpec& chain, std::span<Vec3 const> positions, StartFit& fit,
+    void place(Draft& draft, std::span<Vec3 const> positions, StartFit& fit,
                std::optional<Vec3> const& box) {
+        ChainSpec& chain = draft.chain;
         Beads beads = beads_at(chain, positions);
         bool const link = chain.is_beads() && chain.tip == Tip::jointed;
         StartFit::Chain const at{
@@ -245,7 +254,7 @@ class FrameStart {
         fit.fit(at);
         if (chain.is_beads()) {
             chain.beads.position = beads.arrays.position;
-            if (chain.is_cross_linked()) fit_crosslinks(chain, {scene_, *fields_.find("from")});
+            if (chain.is_cross_linked()) close_crosslinks(draft);
             return;
         }
         LinkedArrays& linked = chain.linked;
@@ -256,6 +265,15 @@ class FrameStart {
             linked.position[u] =
                 beads.arrays.position[first] - to_matrix(q) * linked.carried.position[first];
         }
+    }
+    /// Gives cross-links their lengths, which are those of the frame where the scene gives none.
+    void close_crosslinks(Draft& draft) {
+        std::vector<CrossLink>& links = draft.chain.crosslinks;
+        for (std::size_t c = 0; c < draft.open_crosslinks.size(); ++c)
+            if (draft.open_crosslinks[c]) links[c].length = 0;
+        // Reading the scene has noted redundant links.
+        fit_crosslinks(draft.chain,
+                       {.scene = scene_, .from = *fields_.find("from"), .is_known = true});
     }
     /// Lays the rigid domains of a chain on their beads and moves these onto them. Returns one
     /// motion per unit; that of a single bead is no rotation.

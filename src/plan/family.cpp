@@ -6,7 +6,9 @@
 
 #include "generate/generators.hpp"
 #include "joints/joint_models.hpp"
+#include "scene/branch_limits.hpp"
 #include "scene/freedom.hpp"
+#include "tree/load_balance.hpp"
 
 namespace catena::plan {
 namespace {
@@ -93,6 +95,8 @@ std::vector<Share> shares_of(Scene const& scene, Axes axes, int ranks) {
     struct Members {
         Family family;
         HandleKind largest = HandleKind::link;
+        /// True if one rank computes a whole chain.
+        bool whole = false;
         std::vector<std::int64_t> lengths;
     };
     std::map<std::string, Members> groups;
@@ -102,7 +106,10 @@ std::vector<Share> shares_of(Scene const& scene, Axes axes, int ranks) {
         // it.
         bool const together =
             carries_all(scene.solver.handles) && family.joint != RandomJoint::link;
-        Members& members = groups[together ? "bodies" : family.name()];
+        bool const whole = scene::goes_by_paths(chain);
+        Members& members =
+            groups[together ? "bodies" : family.name() + (whole ? ", whole chains" : "")];
+        members.whole = whole;
         HandleKind const kind = scene::handle_kind(chain);
         if (members.lengths.empty() || kind > members.largest) members.family = family;
         members.largest = std::max(members.largest, kind);
@@ -110,7 +117,9 @@ std::vector<Share> shares_of(Scene const& scene, Axes axes, int ranks) {
     }
     std::vector<Share> shares;
     for (auto const& [name, members] : groups) {
-        dca::Partition const partition(members.lengths, scene.solver.pairwise(), ranks);
+        dca::Partition partition(members.lengths, scene.solver.pairwise(), ranks);
+        partition.whole_chains = members.whole;
+        if (members.whole) dca::cut_by_shares(partition, ranks, {});
         Share share{members.family, 0, merges_of(members.lengths)};
         for (std::size_t r = 0; r + 1 < partition.first_of_rank.size(); ++r)
             share.bodies =

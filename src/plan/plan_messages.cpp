@@ -47,13 +47,14 @@ Cut cut_on(ChainGroup const& group, bool pairwise, GatherWay const& way) {
     dca::Partition const& here = group.partition;
     std::vector<std::int64_t> lengths;
     for (dca::ChainTree const& tree : here.trees) lengths.push_back(tree.bodies);
-    dca::Partition const there(lengths, pairwise, static_cast<int>(way.ranks), here.tip);
     Cut cut;
+    cut.way = way;
+    if (here.whole_chains) return cut;
+    dca::Partition const there(lengths, pairwise, static_cast<int>(way.ranks), here.tip);
     for (int chain = 0; chain < there.chains(); ++chain)
         if (there.is_split(chain))
             cut.shared_units += there.trees[static_cast<std::size_t>(chain)].units;
     cut.inboard = cut.outboard = cut.shared_units > 0;
-    cut.way = way;
     return cut;
 }
 

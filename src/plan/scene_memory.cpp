@@ -154,8 +154,14 @@ Memory memory_of(Scene const& scene, int ranks) {
                           std::any_of(scene.chains.begin(), scene.chains.end(), resists);
     double const runs =
         static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks);
+    auto const whole = static_cast<double>(
+        std::count_if(scene.chains.begin(), scene.chains.end(), scene::goes_by_paths));
     Memory m;
     for (ChainSpec const& chain : scene.chains) {
+        // Ranks share chains, or deal out whole ones.
+        double const sharing = scene::goes_by_paths(chain)
+                                   ? std::min(whole, static_cast<double>(ranks))
+                                   : static_cast<double>(ranks);
         bool const links = chain.is_beads() || chain.is_linked();
         int const k = links ? directions.beads : directions.bodies;
         auto const n = static_cast<double>(chain.size());
@@ -166,10 +172,10 @@ Memory memory_of(Scene const& scene, int ranks) {
         double const numbers =
             chain.is_beads() ? bead_numbers : body_numbers + numbers_of(scene.dynamics, stands);
         m.scene += scene_bytes(chain);
-        m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
+        m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / sharing;
         if (scene::goes_by_paths(chain)) {
             m.solver +=
-                (bytes_of_branches(chain, pairwise, size) + bytes_of_crosslinks(chain)) / ranks;
+                (bytes_of_branches(chain, pairwise, size) + bytes_of_crosslinks(chain)) / sharing;
             continue;
         }
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;

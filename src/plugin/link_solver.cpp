@@ -36,7 +36,7 @@ class GroupLinks {
     virtual void project(std::span<Vec3 const> positions, std::span<Vec3> velocities) = 0;
 };
 
-/// `Fields` is BranchedFields for trees.
+/// `Fields` is BranchedFields for trees and chains with cross-links.
 template <class Fields>
 class LinksOf final : public GroupLinks {
     using Chains = BeadChainsIn<Fields>;
@@ -54,9 +54,9 @@ class LinksOf final : public GroupLinks {
           at_(group.size),
           momentum_(group.size),
           change_(group.size),
-          direction_(group.size),
+          direction_(group.link_entries()),
           tip_direction_(group.has_tips() ? group.size : 0),
-          bias_(group.size + 1, group.directions),
+          bias_(group.link_entries() + 1, group.directions),
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           ring_ends_(group, space, communicator) {
         for (std::int64_t k = 0; k < group.size; ++k)
@@ -127,6 +127,9 @@ class LinksOf final : public GroupLinks {
         Chains const c = chains();
         space_.for_each(group_.size, [c](std::int64_t k) { c.set_direction(k); });
         space_.for_each(std::ssize(tip_), [c](std::int64_t i) { c.set_tip_direction(i); });
+        space_.for_each(
+            std::ssize(group_.crosslinks),
+            [c, first = group_.first_crosslink()](std::int64_t i) { c.set_direction(first + i); });
         solver_->assemble_matrices(
             {direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}});
     }
@@ -134,17 +137,21 @@ class LinksOf final : public GroupLinks {
     /// a position is.
     double measure() {
         Chains const c = chains();
-        double const along = space_.largest(group_.size, [c](std::int64_t k) -> double {
+        auto const at_link = [c](std::int64_t k) -> double {
             double const off = c.linked(k) ? norm(c.link(k)) - c.length.at(k, 0) : 0.0;
             c.bias.at(k, 0) = off;
             return off == 0 ? 0 : std::fabs(off) / c.length.at(k, 0);
-        });
+        };
+        double const along = space_.largest(group_.size, at_link);
+        double const across = space_.largest(std::ssize(group_.crosslinks),
+                                             [at_link, first = group_.first_crosslink()](
+                                                 std::int64_t i) { return at_link(first + i); });
         double const at_tips = space_.largest(std::ssize(tip_), [c](std::int64_t i) -> double {
             double const off = norm(c.tip_link(i)) - c.tip[i].length;
             c.tip_bias.at(c.tip[i].body, 0) = off;
             return std::fabs(off) / c.tip[i].length;
         });
-        return larger(along, at_tips);
+        return larger(larger(along, across), at_tips);
     }
     /// Moves position_ by one sweep, from the biases of measure().
     void correct() {
@@ -217,8 +224,10 @@ class LinksOf final : public GroupLinks {
     }
     Chains chains() {
         Chains c;
-        if constexpr (std::is_same_v<Fields, BranchedFields>)
+        if constexpr (std::is_same_v<Fields, BranchedFields>) {
             c.places.inboard_bead = group_.inboard.data();
+            c.places.crosslink = group_.crosslinks.data();
+        }
         c.places.size = group_.size;
         c.places.is_first = group_.is_first.data();
         c.places.has_link = links_.data();
@@ -263,9 +272,8 @@ std::unique_ptr<Executor> make_executor(int threads) {
 
 class Solver final : public LinkSolver {
   public:
-    Solver(std::vector<double> const& mass, std::vector<Constraint> const& constraints, int threads,
-           std::string const& user)
-        : chains_(constraint_chains(mass, constraints, user)),
+    Solver(std::vector<double> const& mass, std::vector<Constraint> const& constraints, int threads)
+        : chains_(constraint_chains(mass, constraints)),
           communicator_(serial_communicator()),
           executor_(make_executor(worthwhile(threads, constraints.size()))),
           groups_(make_groups(chains_.scene, Axes::world, Handles::projected, false, *communicator_,
@@ -302,8 +310,8 @@ class Solver final : public LinkSolver {
 
 std::unique_ptr<LinkSolver> make_link_solver(std::vector<double> const& mass,
                                              std::vector<Constraint> const& constraints,
-                                             int threads, std::string const& user) {
-    return std::make_unique<Solver>(mass, constraints, threads, user);
+                                             int threads) {
+    return std::make_unique<Solver>(mass, constraints, threads);
 }
 
 }  // namespace catena::plugin

@@ -218,10 +218,11 @@ void take_length(CrossLink& link, ChainRequest const& request) {
 }
 
 /// Adds the entry's cross-links. Where the System joins two beads its length counts, unless the
-/// entry gives one or has `links: as_given`.
-void cross_link(ChainSpec& chain, ChainRequest const& request, Node const& source, bool quiet) {
+/// entry gives one or has `links: as_given`. Returns Draft::open_crosslinks.
+std::vector<bool> cross_link(ChainSpec& chain, ChainRequest const& request, Node const& source,
+                             bool quiet) {
     Node const* const node = request.fields.find("crosslinks");
-    if (!node) return;
+    if (!node) return {};
     bool const generated = is_generated(request, source);
     chain.crosslinks = read_crosslinks(*node, chain);
     if (chain.name.empty()) chain.name = request.name();
@@ -235,7 +236,10 @@ void cross_link(ChainSpec& chain, ChainRequest const& request, Node const& sourc
                  fmt::format("add it, [{}, {}, LENGTH]", link.inboard + 1, link.outboard + 1));
     }
     note_residues(chain.crosslinks, request);
+    std::vector<bool> open;
+    for (CrossLink const& link : chain.crosslinks) open.push_back(link.length == 0);
     fit_crosslinks(chain, {request.scene, *node, generated, quiet});
+    return open;
 }
 
 /// Reads one entry and makes its copies.
@@ -314,6 +318,7 @@ class ChainReader {
         first.name = count_ == 1 ? name : name + "-1";
         drafts.push_back({std::move(first), &request_.node, free_to_move, shape, first_particle});
         if (is_rna(request_)) drafts.back().excluded = excluded_of_nucleotides;
+        drafts.back().open_crosslinks = open_crosslinks_;
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
@@ -325,6 +330,7 @@ class ChainReader {
             drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move,
                               shape, request_.particle});
             drafts.back().excluded = drafts[at].excluded;
+            drafts.back().open_crosslinks = open_crosslinks_;
             drafts.back().chain.name = copy_name;
         }
         drafts.back().bytes = bytes;
@@ -420,7 +426,7 @@ class ChainReader {
         if (chain.is_branched()) request_.protein_ends = {false, false};
         refuse_ring_of_generated(chain, tip_, request_, source_);
         join_tip(chain, tip_, request_);
-        cross_link(chain, request_, source_, copy > 0);
+        open_crosslinks_ = cross_link(chain, request_, source_, copy > 0);
         note_joined_ends(chain, request_);
         if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);
@@ -495,6 +501,8 @@ class ChainReader {
     bool warm_;
     /// Tip of all copies.
     ReadTip tip_;
+    /// Draft::open_crosslinks of the copy made last.
+    std::vector<bool> open_crosslinks_;
     /// Number of copies.
     std::int64_t count_ = 1;
     /// The concentration that decides the number of copies, or nullptr.

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "generate/conformation.hpp"
@@ -51,6 +52,18 @@ Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fi
     fit.fit(chain);
     draft.chain.crosslinks = std::move(from.crosslinks);
     return draft;
+}
+
+/// Fits the positions to the cross-links. Chains with the same links are noted once.
+void close_crosslinks(std::vector<Draft>& drafts, Node const& topology, Scene& scene) {
+    using Links = std::pair<std::vector<std::int64_t>, std::vector<std::array<std::int64_t, 2>>>;
+    std::set<Links> known;
+    for (Draft& draft : drafts) {
+        ChainSpec& chain = draft.chain;
+        if (!chain.is_cross_linked()) continue;
+        bool const is_new = known.emplace(chain.parent, ends_of_crosslinks(chain)).second;
+        fit_crosslinks(chain, {.scene = scene, .from = topology, .is_known = !is_new});
+    }
 }
 
 /// True for masses of one residue, at an end of a chain or elsewhere.
@@ -105,9 +118,7 @@ std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
     for (ImportedChain& chain : imported.chains)
         drafts.push_back(draft_of(std::move(chain), openmm, warm, fit));
     fit.note();
-    for (Draft& draft : drafts)
-        if (draft.chain.is_cross_linked())
-            fit_crosslinks(draft.chain, {scene, *openmm.find("topology")});
+    close_crosslinks(drafts, *openmm.find("topology"), scene);
     return drafts;
 }
 

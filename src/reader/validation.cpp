@@ -11,6 +11,7 @@
 #include <unordered_map>
 
 #include "reader/models.hpp"
+#include "scene/branch_limits.hpp"
 #include "scene/fields.hpp"
 #include "scene/force_changes.hpp"
 #include "scene/freedom.hpp"
@@ -118,8 +119,9 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
                 joint_integrators + ", or leave it out");
 }
 
-/// Checks that articulated handles support the chain. `branched`: some chain of the scene is.
-void check_handles(Node const& root, Scene const& scene, Draft const& draft, bool branched) {
+/// Checks that articulated handles support the chain. `projected`: some chain of the scene has
+/// projected handles only.
+void check_handles(Node const& root, Scene const& scene, Draft const& draft, bool projected) {
     if (scene.solver.handles != Handles::articulated || takes_articulated_handles(draft.chain))
         return;
     ChainSpec const& chain = draft.chain;
@@ -128,7 +130,7 @@ void check_handles(Node const& root, Scene const& scene, Draft const& draft, boo
                                                      : "has a jointed tip";
     fail(*root.find("solver")->find("handles"),
          fmt::format("articulated handles for chain `{}`, which {}", shown(chain.name), why),
-         std::string(branched ? "use `projected`" : "use `projected` or `full`") +
+         std::string(projected ? "use `projected`" : "use `projected` or `full`") +
              ": articulated ones are for open chains of rigid bodies");
 }
 
@@ -301,15 +303,15 @@ void check_end_to_end(Node const& root, OutputSpec const& output,
 
 void check_together(Node const& root, Scene const& scene, std::vector<Draft> const& drafts) {
     check_names(drafts);
-    bool const branched = std::any_of(drafts.begin(), drafts.end(),
-                                      [](Draft const& d) { return d.chain.is_branched(); });
+    bool const projected = std::any_of(drafts.begin(), drafts.end(),
+                                       [](Draft const& d) { return goes_by_paths(d.chain); });
     Draft const* previous = nullptr;
     for (Draft const& draft : drafts) {
         // Copies of one entry have the same properties.
         if (previous && previous->node == draft.node) continue;
         previous = &draft;
         check_forces(root, scene, draft);
-        check_handles(root, scene, draft, branched);
+        check_handles(root, scene, draft, projected);
         if (scene.dynamics.given) check_integrator(root, scene, draft);
         check_fixman(root, scene.dynamics, draft);
         check_thermal(root, scene.dynamics, draft);

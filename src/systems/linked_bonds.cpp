@@ -159,7 +159,9 @@ std::vector<std::string> remove_constraints(System& system, LinkTable const& lin
             throw InputError(fmt::format("the constraint between particles {} and {} (from 0) is "
                                          "not a link of the scene",
                                          a, b),
-                             where, "constrain neighbours in a chain only, or make it a bond");
+                             where,
+                             "join the two beads by a link or by `crosslinks` of their chain, or "
+                             "make it a bond");
         if (std::abs(*link - length) > same_length)
             throw InputError(fmt::format("the constraint between particles {} and {} (from 0) has "
                                          "length {}, its link {}",

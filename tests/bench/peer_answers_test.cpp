@@ -90,6 +90,14 @@ TEST(PeerAnswers, ChainsThatTheTableCannotHoldAreNotAskedAbout) {
     EXPECT_EQ(not_for_peers(scene), "forces that they lack (drag)");
     scene.chains.push_back(scene.chains[0]);
     EXPECT_EQ(not_for_peers(scene), "not a single chain");
+    scene =
+        parse_scene("chains: [{generator: {freely_jointed: {beads: 9, length: 0.5}}}]", "s.yaml");
+    EXPECT_EQ(not_for_peers(scene), "");
+    scene.chains[0].crosslinks = {{0, 5, 1}};
+    EXPECT_EQ(not_for_peers(scene), "a cross-linked chain");
+    scene = parse_scene("chains: [{generator: {star: {arms: 3, arm_length: 2, length: 0.5}}}]",
+                        "s.yaml");
+    EXPECT_EQ(not_for_peers(scene), "a branched chain");
 }
 
 PeerProgram made_up(std::string const& name, std::string const& script) {

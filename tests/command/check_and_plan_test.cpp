@@ -130,6 +130,25 @@ TEST(Plan, JsonNamesTreeAndSweeps) {
     EXPECT_EQ(langevin.at("dynamics").at("matrix_sweeps_a_step"), 2);
 }
 
+/// One rank computes a whole branched chain, so that more ranks do not help a single one.
+TEST(Plan, PredictsWholeBranchedChainsOnRanks) {
+    TemporaryFolder const folder;
+    for (int const chains : {1, 4}) {
+        std::string const scene = folder / "stars.yaml";
+        std::ofstream(scene) << "chains: [{name: star, count: " << chains
+                             << ", generator: {star: {arms: 4, arm_length: 50, length: 0.4}}}]\n"
+                                "dynamics: {integrator: g-baoab, step: 0.01, steps: 10}\n";
+        Ended const e = catena({"plan", scene, "--ranks", "4", "--latency", "2us", "--bandwidth",
+                                "10GB/s", "--json", "-"});
+        expect_good(e);
+        auto const row = e.json().at("network").at("predicted").back();
+        EXPECT_EQ(row.at("ranks"), 4) << e.out;
+        EXPECT_EQ(row.at("bodies_a_rank"), 201) << e.out;
+        EXPECT_EQ(row.at("gathers"), 0) << e.out;
+        EXPECT_EQ(row.at("message_seconds"), 0) << e.out;
+    }
+}
+
 TEST(Plan, DescribesThePathsOfBranchedChains) {
     TemporaryFolder const folder;
     std::string const scene = folder / "stars.yaml";

@@ -238,12 +238,14 @@ TEST_F(Messages, TermsAreNamedForTablesAndPeople) {
 
 TEST_F(Messages, ConstraintsThatAreNoLinks) {
     std::string const where = " (scene.yaml: forces.openmm.system): ";
-    EXPECT_EQ(of_system([](auto& s) { s.addConstraint(0, 2, 0.5); }),
-              "the constraint between particles 0 and 2 (from 0) is not a link of the scene" +
-                  where + "constrain neighbours in a chain only, or make it a bond");
-    EXPECT_EQ(of_system([](auto& s) { s.addConstraint(3, 4, 0.38); }),
-              "the constraint between particles 3 and 4 (from 0) is not a link of the scene" +
-                  where + "constrain neighbours in a chain only, or make it a bond");
+    EXPECT_EQ(
+        of_system([](auto& s) { s.addConstraint(0, 2, 0.5); }),
+        "the constraint between particles 0 and 2 (from 0) is not a link of the scene" + where +
+            "join the two beads by a link or by `crosslinks` of their chain, or make it a bond");
+    EXPECT_EQ(
+        of_system([](auto& s) { s.addConstraint(3, 4, 0.38); }),
+        "the constraint between particles 3 and 4 (from 0) is not a link of the scene" + where +
+            "join the two beads by a link or by `crosslinks` of their chain, or make it a bond");
     EXPECT_EQ(of_system([](auto& s) { s.addConstraint(1, 2, 0.5); }),
               "the constraint between particles 1 and 2 (from 0) has length 0.5, its link 0.38" +
                   where + "give both the same length");

@@ -78,6 +78,20 @@ std::string const rod = fmt::format(
 std::string const free_joints =
     fmt::format("{{random: {{bodies: {}, joint: spherical, seed: 1, loads: false}}}}", rods);
 
+/// A rank has all of a branched chain or nothing; ranks share other chains.
+TEST(HostMemory, OfAWholeChainIsNotShared) {
+    auto const of = [](std::string const& chain, int ranks) {
+        command::Memory const memory =
+            command::memory_of(parse_scene("chains: [{" + chain + "}]\n", "scene.yaml", {}), ranks);
+        return memory.state + memory.solver;
+    };
+    std::string const star = "generator: {star: {arms: 4, arm_length: 500, length: 0.5}}";
+    EXPECT_EQ(of(star, 4), of(star, 1));
+    EXPECT_NEAR(of(star + ", count: 4", 2), of(star + ", count: 4", 1) / 2, 1);
+    std::string const plain = "generator: {freely_jointed: {beads: 2000, length: 0.5}}";
+    EXPECT_NEAR(of(plain, 4), of(plain, 1) / 4, 1);
+}
+
 /// An estimate: loads are counted as if every joint had some.
 TEST(HostMemory, IsWithinATenthOfWhatIsTaken) {
     for (std::string const& chain : {rod, free_joints})

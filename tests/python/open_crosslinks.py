@@ -90,6 +90,17 @@ def starts_from_a_frame(scene, frame, whole, folder):
         check(np.abs(file["particles/trajectory/position/value"][0] - whole[-1]).max() < 1e-9, "a frame as start changes positions")
     other = write(folder, "another", crosslinks="[[5, 10, 0.7]]")
     refused("has other cross-links in", "check", other, "--set", f"start={{from: {frame}}}")
+    # The order of the list does not count, and a length that the scene leaves open is that of the frame, not of the generated start.
+    reordered = write(folder, "reordered")
+    with open(reordered) as file:
+        text = file.read().replace("[[1, 30, 0.5], [5, 20, 0.6]]", "[[20, 5], [30, 1, 0.5]]")
+    with open(reordered, "w") as file:
+        file.write(text)
+    found = catena("check", reordered, "--set", f"start={{from: {frame}}}")
+    check("close cross-links" not in found, found)
+    catena("run", reordered, "--output", output, "--overwrite", "--quiet", "--steps", "0", "--set", f"start={{from: {frame}}}")
+    with h5py.File(os.path.join(output, "trajectory.h5md")) as file:
+        check(np.abs(file["particles/trajectory/position/value"][0] - whole[-1]).max() < 1e-9, "an open length moves the frame's beads")
 
 
 def damaged_crosslinks_are_refused(output, folder):
@@ -105,9 +116,13 @@ def analyses_name_cross_linked_chains(output, folder):
 
 
 def numbers_are_told(scene, folder):
-    check("with 2 cross-links" in catena("check", scene), "check does not tell cross-links")
+    check("cross-linked beads" in catena("check", scene), "check does not tell cross-links")
     plan = catena("plan", scene)
     check("cross-linked chains of" in plan and "up to 2 a chain" in plan, plan)
+    launch = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", "3", PROGRAM]
+    if shutil.which("mpirun") and "MPI " in catena("--version"):  # rank 0 has one of the three chains
+        on_ranks = subprocess.run([*launch, "plan", scene], capture_output=True, text=True).stdout
+        check("cross-linked chains of" in on_ranks and "4, up to 2 a chain" in on_ranks, on_ranks)
     told = os.path.join(folder, "solution.json")
     catena("solve", scene, "--json", told)
     with open(told) as file:
@@ -159,6 +174,33 @@ def a_constrained_system_runs(folder):
     check(np.abs(np.linalg.norm(x[:, 0] - x[:, -1], axis=1) - length).max() < 1e-9, "the ring opens")
 
 
+def redundant_links_of_alike_chains_are_noted_once(folder):
+    """Two chains of five beads with all ten constraints each, of which one is redundant."""
+    import openmm
+    from openmm import unit
+    shape = np.array([[0, 0, 0], [0.3, 0.1, 0], [0.4, 0.4, 0.1], [0.1, 0.5, 0.3], [0.2, 0.2, 0.5]])
+    system = openmm.System()
+    lines = []
+    for chain in "AB":
+        first = system.getNumParticles()
+        for k, place in enumerate(shape + (3 if chain == "B" else 0)):
+            system.addParticle(57.05 * unit.dalton)
+            lines.append(f"ATOM  {first + k + 1:5} CA   GLY {chain}{k + 1:4}    {10 * place[0]:8.3f}{10 * place[1]:8.3f}{10 * place[2]:8.3f}  1.00  0.00")
+        lines.append("TER")
+        for a in range(5):
+            for b in range(a + 1, 5):
+                system.addConstraint(first + a, first + b, float(np.linalg.norm(shape[a] - shape[b])))
+    with open(os.path.join(folder, "rigid.xml"), "w") as file:
+        file.write(openmm.XmlSerializer.serialize(system))
+    with open(os.path.join(folder, "rigid.pdb"), "w") as file:
+        file.write("\n".join([*lines, "END\n"]))
+    scene = os.path.join(folder, "rigid.yaml")
+    with open(scene, "w") as file:
+        file.write("forces: {openmm: {system: rigid.xml, topology: rigid.pdb, platform: Reference}}\n")
+    told = catena("check", scene)
+    check(told.count("1 of the 10 links of chain `A` is redundant") == 1 and "chain `B`" not in told, told)
+
+
 def the_protein_is_valid(inputs, folder):
     scene = os.path.join(inputs, "cross-linked.yaml")
     told = catena("check", scene)
@@ -184,7 +226,9 @@ def main():
                 catena("run", scene, "--output", os.path.join(folder, "replicas"), "--quiet", "--set", "replicas=2")
         if openmm:
             a_constrained_system_runs(folder)
+            redundant_links_of_alike_chains_are_noted_once(folder)
             the_protein_is_valid(inputs, folder)
+    print("check, plan, solve, run, restart, topologies and Systems of cross-linked chains are as they should be")
 
 
 PROGRAM = sys.argv[1]

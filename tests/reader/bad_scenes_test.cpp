@@ -113,13 +113,13 @@ chains: [{generator: {pendulum: {links: 3}}, count: 1000}])y",
      "the box 10 x 10 x 10 has room for 8 chains side by side, each within a sphere 4.5 wide, not "
      "for 1000 (s.yaml: chains[0], line 2): "
      "enlarge the box or lower `count`; only free chains of a `sequence` or `fasta` "
-     "without `positions` are packed more densely"},
+     "without `positions` and cross-links are packed more densely"},
     {"tethers_too_many_for_box", R"y(box: {periodic: [10, 10, 10]}
 chains: [{sequence: GGG, model: calvados2, base: fixed, count: 9000, conformation: self_avoiding}])y",
      "the box 10 x 10 x 10 has room for 216 chains side by side, each within a sphere 1.52 wide, "
      "not for 9000; at random places 1094 found room (s.yaml: chains[0], line 2): "
      "enlarge the box or lower `count`; only free chains of a `sequence` or `fasta` "
-     "without `positions` are packed more densely"},
+     "without `positions` and cross-links are packed more densely"},
     {"packing_beyond_any", R"y(box: {periodic: [10, 10, 10]}
 chains: [{sequence: GGGGGGGGGG, model: calvados2, count: 1000}])y",
      "10000 beads that stay 0.56 nm apart would fill 0.805 of the box 10 x 10 x 10, random "

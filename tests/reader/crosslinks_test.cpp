@@ -1,6 +1,7 @@
 // Cross-links in scenes: what they mean, how starts are fitted to them, and what is refused.
 #include <cmath>
 
+#include "generate/start_fit.hpp"
 #include "reader/load_scene.hpp"
 #include "scene/freedom.hpp"
 #include "tests/reader/refusal.hpp"
@@ -81,6 +82,29 @@ TEST(CrossLinksOfAScene, OfASpecialStartAreNoted) {
                                   "crosslinks: [[1, 3]]}]",
                                   "s.yaml"),
                       "would not elsewhere"));
+}
+
+/// Positions of a frame or a checkpoint take back what a start's fit has said, but not what links
+/// are redundant anywhere.
+TEST(CrossLinksOfAScene, OtherPositionsTakeBackWhatTheFitSaid) {
+    Scene moved = parse_scene(square("crosslinks: [[1, 4, 1]]"), "s.yaml");
+    ASSERT_TRUE(notes(moved, "beads are moved by up to"));
+    scene::forget_fits(moved);
+    EXPECT_FALSE(notes(moved, "beads are moved by up to"));
+    Scene special = parse_scene(
+        "chains: [{bodies: [{mass: 1, position: [0, 0, 0]}, "
+        "{mass: 1, position: [1, 0, 0], joint: {type: link}}, "
+        "{mass: 1, position: [2, 0, 0], joint: {type: link}}], "
+        "crosslinks: [[1, 3]]}]",
+        "s.yaml");
+    scene::forget_fits(special);
+    EXPECT_FALSE(notes(special, "would not elsewhere"));
+}
+
+TEST(CrossLinksOfAScene, HaveProjectedHandlesInAdviceToo) {
+    EXPECT_NE(refusal_of(square("crosslinks: [[1, 4]]") + "\nsolver: {handles: articulated}")
+                  .find("use `projected`:"),
+              std::string::npos);
 }
 
 TEST(CrossLinksOfAScene, TheFingerprintCoversThem) {

@@ -36,8 +36,11 @@ def frames_of(
         return Frames(positions.topology, positions_of(positions), edges, doubles(positions.times, 1, "times"), [])
     x = positions_of(positions)
     n_frames, n_beads = x.shape[:2]
+    notes: list[str] = []
     if is_group(positions):
-        chains, masses, residues, box, times = _of_group(positions, chains, masses, residues, box, times)
+        if chains is None:
+            chains = _segments_of(positions, notes)
+        masses, residues, box, times = _of_group(positions, masses, residues, box, times)
     masses = np.ones(n_beads) if masses is None else _row(masses, n_beads, "masses", "beads")
     if not (masses > 0).all():
         raise InputError("a mass is not positive (masses): leave out sites without mass")
@@ -46,7 +49,6 @@ def frames_of(
         raise InputError(f"there are {len(names)} residues and {n_beads} beads (residues): give a name for each bead")
     edges = None if box is None else _edges_of(box, n_frames)
     counts = _counts_of(chains, n_beads)
-    notes: list[str] = []
     if times is not None:
         times = _row(times, n_frames, "times", "frames")
     _require_whole(x, counts, edges)
@@ -111,13 +113,20 @@ def doubles(values: Any, dimensions: int, name: str) -> np.ndarray:
     return array
 
 
-def _of_group(group: Any, chains: Any, masses: Any, residues: Any, box: Any, times: Any) -> tuple[Any, ...]:
-    """Completes what is not given from an atom group: segments as chains, masses, residue names, box, times."""
-    if chains is None:
-        changes = np.flatnonzero(np.diff(group.segindices)) + 1
-        chains = np.diff([0, *changes, len(group)]).tolist()
-        if len(chains) != len(group.segments):
-            raise InputError("the atoms of a segment do not follow each other (positions): sort the atom group, or give chains")
+def _segments_of(group: Any, notes: list[str]) -> list[int]:
+    """Returns the number of atoms of each segment. Notes bonded molecules that are no segments."""
+    changes = np.flatnonzero(np.diff(group.segindices)) + 1
+    counts = np.diff([0, *changes, len(group)]).tolist()
+    if len(counts) != len(group.segments):
+        raise InputError("the atoms of a segment do not follow each other (positions): sort the atom group, or give chains")
+    molecules = len(np.unique(group.fragindices)) if hasattr(group, "bonds") and len(group.bonds) else len(counts)
+    if molecules != len(counts):
+        notes.append(f"each of {len(counts)} segments is taken as a chain, but bonds make {molecules} molecules: give chains if those are meant")
+    return counts
+
+
+def _of_group(group: Any, masses: Any, residues: Any, box: Any, times: Any) -> tuple[Any, ...]:
+    """Completes what is not given from an atom group: masses, residue names, box, times."""
     if masses is None and hasattr(group, "masses"):
         masses = group.masses
     if residues is None and hasattr(group, "resnames"):
@@ -129,7 +138,7 @@ def _of_group(group: Any, chains: Any, masses: Any, residues: Any, box: Any, tim
         box = np.array([cell[:3] for _, cell in cells], dtype=float) / 10
     if times is None:
         times = [time for time, _ in cells]
-    return chains, masses, residues, box, times
+    return masses, residues, box, times
 
 
 def _row(values: Any, count: int, name: str, of: str) -> np.ndarray:

@@ -155,7 +155,7 @@ def _analysis_of_frames(
     if cutoff is not None and not 0 <= cutoff < np.inf:
         raise InputError(f"the cutoff is {cutoff} (cutoff): give a distance, or 0 for no contacts")
     steps = list(range(len(frames.positions)))
-    times = steps if frames.times is None else frames.times
+    times = steps if frames.times is None else frames.times.tolist()
     try:
         found = _core.analyse(
             frames.topology, frames.positions, frames.edges, steps, times, discard, cutoff, fit, axes[slab], slab == "auto", bins

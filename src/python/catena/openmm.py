@@ -1,7 +1,7 @@
 """Integrators for plain OpenMM scripts, whose constraints Catena solves.
 
-Constraints that form chains, rings and trees are solved by the divide-and-conquer algorithm instead of CCMA. Rigid
-water stays with SETTLE. All else is OpenMM's: states, forces, reporters, checkpoints, XML.
+Constraints are solved by the divide-and-conquer algorithm instead of CCMA: of every shape on the platforms CPU and
+Reference, those that form chains on GPUs. Rigid water stays with SETTLE. All else is OpenMM's: states, forces, reporters, checkpoints, XML.
 
     from catena.openmm import ChainLangevinIntegrator
     integrator = ChainLangevinIntegrator(300 * unit.kelvin, 0.01 / unit.picosecond, 0.01 * unit.picosecond)
@@ -55,8 +55,8 @@ class ChainLangevinIntegrator(openmm.LangevinMiddleIntegrator):
     """OpenMM's LangevinMiddleIntegrator, with constraints solved by the divide-and-conquer algorithm.
 
     Parameters are those of OpenMM: temperature (K), friction (1/ps) and step (ps), as numbers or quantities. Creating
-    a Context raises an OpenMMException if constraints form loops with branches, or on a platform other than CPU and
-    Reference. A step raises one if constraints stay open.
+    a Context on a GPU raises an OpenMMException if constraints form rings, trees or nets. A step raises one if
+    constraints stay open.
     """
 
     def __init__(self, temperature: Any, friction: Any, step: Any) -> None:

@@ -87,6 +87,6 @@ class Record:
 
     def _take(self, simulation: Simulation) -> None:
         state = simulation.state
-        self._frames.append(self._sites.positions(state.positions, state.orientations))
+        self._frames.append(np.asarray(self._sites.positions(state.positions, state.orientations)))
         temperature = np.nan if state.temperature is None else state.temperature
         self._rows.append((state.steps, state.time, state.kinetic_energy, state.potential_energy, temperature))
