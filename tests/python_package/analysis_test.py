@@ -97,7 +97,7 @@ class SeveralChains(Case):
 
     def test_what_is_no_array_is_refused(self):
         for wrong in ("run/trajectory.h5md", catena.Simulation(chains_of(catena.Model())), [[1, 2], [3]]):
-            with self.assertRaisesRegex(catena.InputError, r"the positions are of the type \w+ \(positions\): give an array of numbers, an atom group or a Record"):
+            with self.assertRaisesRegex(catena.InputError, r"the positions are of the type \w+ \(positions\): give an array of numbers, an atom"):
                 catena.analysis.radius_of_gyration(wrong)
         with self.assertRaisesRegex(catena.InputError, "the type dict is no simulation"):
             catena.Record({})
@@ -195,7 +195,8 @@ class Analyses(Case):
     def test_wrong_arguments_are_refused(self):
         x = chains(10, 12)
         for arguments, words in (({"chains": [5, 6]}, "11 beads and the positions 12"), ({"chains": 5}, "no whole number"), ({"masses": np.ones(3)}, "3 masses"),
-                                 ({"residues": ["GLY"]}, "1 residues"), ({"slab": "w"}, "axis of the slab"), ({"slab": "z"}, r"slab='z'\): give a box, or leave slab out"),
+                                 ({"residues": ["GLY"]}, "1 residues"), ({"slab": "w"}, "axis of the slab"),
+                                 ({"slab": "z"}, r"slab='z'\): give a box, or leave slab out"),
                                  ({"discard": 1}, "discard"), ({"bins": 3}, "even"), ({"cutoff": -1}, "cutoff"), ({"box": [1, 2]}, "three positive edges"),
                                  ({"times": [1]}, "1 times"), ({"box": [9, 9, 9], "cutoff": 5}, r"exceeds half .*\(cutoff\)")):
             with self.assertRaisesRegex(catena.InputError, words):

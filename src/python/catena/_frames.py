@@ -53,9 +53,8 @@ def frames_of(
         times = _row(times, n_frames, "times", "frames")
     _require_whole(x, counts, edges)
     parents = _parents_of(positions, counts, notes) if is_group(positions) else []
-    topology = _core.Topology.of(
-        [(f"chain-{number + 1}", count) for number, count in enumerate(counts)], ring, masses.tolist(), names, None if edges is None else tuple(edges[0]), False, parents
-    )
+    named = [(f"chain-{number + 1}", count) for number, count in enumerate(counts)]
+    topology = _core.Topology.of(named, ring, masses.tolist(), names, None if edges is None else tuple(edges[0]), False, parents)
     return Frames(topology, x, edges, _unless_wrapped(x, counts, edges, times, notes), notes)
 
 

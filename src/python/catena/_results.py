@@ -138,7 +138,8 @@ class Analysis:
             names = ", ".join(sorted({" and ".join(each.kinds) for each in self.maps if each.within == within})) or "none"
             where = "within chains" if within else "between chains"
             what = f"there are {len(found)} contact maps {where}" if found else f"there is no contact map {where}"
-            raise InputError(f"{what} (contact_map): {'name two kinds of ' + names if names != 'none' else 'analyse several chains, with a cutoff' if not within else 'analyse with a cutoff'}")
+            advice = f"name two kinds of {names}" if found or names != "none" else f"analyse {'' if within else 'several chains '}with a cutoff"
+            raise InputError(f"{what} (contact_map): {advice}")
         return found[0]
 
 

@@ -167,7 +167,8 @@ def _analysis_of_frames(
 
 def _in_python(message: str) -> str:
     """Returns a message of the program with its options as the arguments that they are here."""
-    return re.sub(r"--slab ([xyz])", r"slab='\1'", message).replace("--fit MIN,MAX", "fit=(least, most)").replace("leave --slab out", "give a box, or leave slab out").replace("--", "")
+    message = re.sub(r"--slab ([xyz])", r"slab='\1'", message).replace("leave --slab out", "give a box, or leave slab out")
+    return message.replace("--fit MIN,MAX", "fit=(least, most)").replace("--", "")
 
 
 def _estimate_of(values: np.ndarray) -> Estimate:
