@@ -162,7 +162,7 @@ class LinksOf final : public GroupLinks {
         });
     }
     /// Repeats sweep() until the links are closed to `enough` or to rounding, also if `tolerance`
-    /// asks for less.
+    /// asks for less. What stays open nevertheless is within `tolerance`.
     template <class Sweep>
     void repeat(double tolerance, Sweep const& sweep) {
         double before = std::numeric_limits<double>::infinity();
@@ -173,7 +173,7 @@ class LinksOf final : public GroupLinks {
             if (!std::isfinite(error)) refuse_positions();
             if (error > before / 2 && error <= rounding()) return;
             bool const same = sweeps > 0 && std::fabs(error - before) <= unchanged * before;
-            if (same && error <= tolerance) return;
+            if ((same || sweeps == most_sweeps) && error <= tolerance) return;
             if (sweeps == most_sweeps) refuse(error);
             before = error;
             sweep();
