@@ -116,7 +116,7 @@ def analyses_name_cross_linked_chains(output, folder):
 
 
 def numbers_are_told(scene, folder):
-    check("cross-linked beads" in catena("check", scene), "check does not tell cross-links")
+    check("beads with 2 cross-links" in catena("check", scene), "check does not tell cross-links")
     plan = catena("plan", scene)
     check("cross-linked chains of" in plan and "up to 2 a chain" in plan, plan)
     launch = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", "3", PROGRAM]
