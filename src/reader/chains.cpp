@@ -219,7 +219,7 @@ class ChainReader {
         first.name = count_ == 1 ? name : name + "-1";
         drafts.push_back({std::move(first), &request_.node, free_to_move, shape, first_particle});
         if (is_rna(request_)) drafts.back().excluded = excluded_of_nucleotides;
-        drafts.back().open_crosslinks = open_crosslinks_;
+        drafts.back().open_crosslinks = open_crosslinks(drafts.back().chain);
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
@@ -231,7 +231,7 @@ class ChainReader {
             drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move,
                               shape, request_.particle});
             drafts.back().excluded = drafts[at].excluded;
-            drafts.back().open_crosslinks = open_crosslinks_;
+            drafts.back().open_crosslinks = open_crosslinks(drafts.back().chain);
             drafts.back().chain.name = copy_name;
         }
         drafts.back().bytes = bytes;
@@ -335,7 +335,7 @@ class ChainReader {
 
     /// Adds the entry's cross-links. Where the System joins two beads its length counts, unless the
     /// entry gives one or has `links: as_given`.
-    void cross_link(ChainSpec& chain, std::int64_t copy) {
+    void cross_link(ChainSpec& chain, std::int64_t copy) const {
         Node const* const node = request_.fields.find("crosslinks");
         if (!node) return;
         chain.crosslinks = read_crosslinks(*node, chain);
@@ -346,8 +346,6 @@ class ChainReader {
                         request_.particle + link.inboard, request_.particle + link.outboard);
                     length > 0)
                     link.length = length;
-        open_crosslinks_.clear();
-        for (CrossLink const& link : chain.crosslinks) open_crosslinks_.push_back(link.length == 0);
         bool const far = source_.key != "bodies" && !is_given();
         fit_crosslinks(chain, {request_.scene, *node, far, copy > 0});
     }
@@ -402,6 +400,19 @@ class ChainReader {
             conformation ? conformation->text == "self_avoiding" : count_ > 1 && !is_given();
         return any_shape ? Regrowth::yes : Regrowth::if_asked;
     }
+    /// Draft::open_crosslinks of the copy made last.
+    std::vector<bool> open_crosslinks(ChainSpec const& chain) const {
+        std::vector<bool> open;
+        Node const* const node = request_.fields.find("crosslinks");
+        bool const by_system = request_.system && !request_.links_as_given();
+        for (std::size_t c = 0; node && c < node->items.size(); ++c)
+            open.push_back(
+                node->items[c].items.size() < 3 &&
+                !(by_system &&
+                  request_.system->length(request_.particle + chain.crosslinks[c].inboard,
+                                          request_.particle + chain.crosslinks[c].outboard) > 0));
+        return open;
+    }
     /// Estimates the memory, bytes, of all chains up to this entry's. Throws InputError before
     /// chains are made that cannot fit.
     double with_copies(double before, std::int64_t size, bool beads) const {
@@ -425,8 +436,6 @@ class ChainReader {
     bool warm_;
     /// Tip of all copies.
     ReadTip tip_;
-    /// Draft::open_crosslinks of the copy made last.
-    std::vector<bool> open_crosslinks_;
     /// Number of copies.
     std::int64_t count_ = 1;
     /// The concentration that decides the number of copies, or nullptr.
