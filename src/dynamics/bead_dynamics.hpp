@@ -214,13 +214,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
         double const at_tips = space_.largest(
             tips(), [c] CATENA_LAMBDA(std::int64_t i) -> double { return c.tip_error(i); });
-        if constexpr (Fields::has_crosslinks) {
-            double across = 0;
-            for (std::int64_t i = 0; i < std::ssize(group_.crosslinks); ++i)
-                across = larger(across, c.error(group_.first_crosslink() + i));
-            return larger(larger(along, at_tips), across);
-        }
-        return larger(along, at_tips);
+        double worst = larger(along, at_tips);
+        for (std::int64_t i = 0; i < std::ssize(group_.crosslinks); ++i)
+            worst = larger(worst, c.error(group_.first_crosslink() + i));
+        return worst;
     }
     double own_error_beyond(double tolerance) override {
         if constexpr (Space::answers_at_once)

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
@@ -44,11 +45,11 @@ class Neighbours {
 /// Particles that constraints join, and what they form.
 struct Cluster {
     std::vector<std::int64_t> particles;
-    std::size_t links = 0, ends = 0, most_links = 0;
+    std::size_t links = 0, most_links = 0;
     std::int64_t first_end = -1;  // A particle with one constraint.
 
-    bool is_tree() const { return links + 1 == particles.size(); }
     bool is_ring() const { return links == particles.size() && most_links == 2; }
+    std::int64_t start() const { return first_end >= 0 ? first_end : particles.front(); }
 };
 
 /// Returns the cluster of a particle, and marks its particles as seen.
@@ -87,17 +88,23 @@ class Chains {
         : mass_(mass), neighbours_(neighbours), bead_of_(mass.size(), -1) {}
 
     /// Appends a tree, from one of its ends on. Each bead follows the one on which it hangs.
+    /// Constraints that close loops become cross-links.
     void add_tree(Cluster const& cluster) {
         ChainSpec chain;
-        std::vector<Step> open{{cluster.first_end, -1, 0}};
+        std::vector<Step> open{{cluster.start(), -1, 0}};
         while (!open.empty()) {
             Step const step = open.back();
             open.pop_back();
+            if (bead_of_[std::size_t(step.particle)] >= 0) continue;  // reached by another link
             std::int64_t const bead = add(chain, step.particle, step.distance);
             chain.parent.push_back(step.parent);
-            for (auto const& link : neighbours_.of(step.particle))
-                if (bead_of_[std::size_t(link.particle)] < 0)
+            for (auto const& link : neighbours_.of(step.particle)) {
+                std::int64_t const there = bead_of_[std::size_t(link.particle)];
+                if (there < 0)
                     open.push_back({link.particle, bead, link.distance});
+                else if (there != step.parent)
+                    chain.crosslinks.push_back({there, bead, link.distance});
+            }
         }
         if (cluster.most_links <= 2) chain.parent.clear();
         close(std::move(chain));
@@ -149,34 +156,20 @@ class Chains {
     ConstraintChains chains_;
 };
 
-[[noreturn]] void refuse(Cluster const& cluster, std::string const& user) {
-    std::size_t const loops = cluster.links + 1 - cluster.particles.size();
-    auto const [low, high] =
-        std::minmax_element(cluster.particles.begin(), cluster.particles.end());
-    throw InputError(
-        fmt::format("{} constraints that join {} particles with {} closed loop{}", cluster.links,
-                    cluster.particles.size(), loops, loops == 1 ? " and branches" : "s"),
-        fmt::format("System, particles {} to {}", *low, *high),
-        fmt::format("{} solves chains, rings and trees; take OpenMM's own integrator, or open the "
-                    "loops",
-                    user));
-}
-
 void check_distances(std::vector<Constraint> const& constraints) {
     for (std::size_t i = 0; i < constraints.size(); ++i)
-        if (!(constraints[i].distance > 0))
+        if (!(constraints[i].distance > 0) || !std::isfinite(constraints[i].distance))
             throw InputError(
                 fmt::format("a constraint to the distance {} nm", constraints[i].distance),
                 fmt::format("System, particles {} and {}", constraints[i].first,
                             constraints[i].second),
-                "give a positive distance");
+                "give a positive, finite distance");
 }
 
 }  // namespace
 
 ConstraintChains constraint_chains(std::vector<double> const& mass,
-                                   std::vector<Constraint> const& constraints,
-                                   std::string const& user) {
+                                   std::vector<Constraint> const& constraints) {
     check_distances(constraints);
     Neighbours const neighbours(mass.size(), constraints);
     Chains chains(mass, neighbours);
@@ -184,12 +177,10 @@ ConstraintChains constraint_chains(std::vector<double> const& mass,
     for (std::int64_t k = 0; k < std::ssize(mass); ++k) {
         if (seen[std::size_t(k)] || neighbours.of(k).empty()) continue;
         Cluster const cluster = cluster_of(k, neighbours, seen);
-        if (cluster.is_tree())
-            chains.add_tree(cluster);
-        else if (cluster.is_ring())
+        if (cluster.is_ring())
             chains.add_ring(cluster);
         else
-            refuse(cluster, user);
+            chains.add_tree(cluster);
     }
     return chains.take();
 }

@@ -1,8 +1,7 @@
-// Distance constraints of a System as chains, rings and trees of beads on links.
+// Distance constraints of a System as chains of beads on links.
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -22,11 +21,10 @@ struct ConstraintChains {
     std::vector<std::int64_t> particle;
 };
 
-/// Sorts constraints into chains, rings and trees. `mass`: mass of each particle, amu. `user` names
-/// who solves the constraints, for messages. Throws InputError if particles are joined by several
-/// loops, or by a loop with branches, and if a constrained distance is not positive.
+/// Sorts constraints into chains, rings and trees; those that close further loops become
+/// cross-links. `mass`: mass of each particle, amu. Throws InputError if a constrained distance is
+/// not positive.
 ConstraintChains constraint_chains(std::vector<double> const& mass,
-                                   std::vector<Constraint> const& constraints,
-                                   std::string const& user);
+                                   std::vector<Constraint> const& constraints);
 
 }  // namespace catena::plugin

@@ -70,8 +70,7 @@ ContextConstraints::ContextConstraints(OpenMM::ContextImpl& context, std::string
 
 LinkSolver& ContextConstraints::solver() {
     OpenMM::System const& system = context_.getSystem();
-    if (!solver_)
-        solver_ = make_link_solver(masses_of(system), constraints_to_solve(system), 1, user_);
+    if (!solver_) solver_ = make_link_solver(masses_of(system), constraints_to_solve(system), 1);
     return *solver_;
 }
 

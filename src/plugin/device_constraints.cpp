@@ -232,15 +232,19 @@ class OnDevice final : public DeviceConstraints {
     int unseen_ = 0, seen_ = 1;
 };
 
-void refuse_rings_and_trees(ConstraintChains const& chains, std::string const& platform,
-                            std::string const& user) {
+void refuse_other_shapes(ConstraintChains const& chains, std::string const& platform,
+                         std::string const& user) {
     std::size_t bead = 0;
     for (ChainSpec const& chain : chains.scene.chains) {
-        if (chain.is_branched() || chain.is_ring())
-            throw InputError(fmt::format("constraints that form a {} on the platform {}",
-                                         chain.is_ring() ? "ring" : "tree", platform),
-                             fmt::format("System, with particle {}", chains.particle[bead]),
-                             user + " solves chains there; take the platform CPU");
+        char const* const shape = chain.is_cross_linked() ? "net"
+                                  : chain.is_ring()       ? "ring"
+                                  : chain.is_branched()   ? "tree"
+                                                          : nullptr;
+        if (shape != nullptr)
+            throw InputError(
+                fmt::format("constraints that form a {} on the platform {}", shape, platform),
+                fmt::format("System, with particle {}", chains.particle[bead]),
+                user + " solves chains there; take the platform CPU");
         bead += chain.beads.size();
     }
 }
@@ -256,8 +260,8 @@ std::unique_ptr<DeviceConstraints> make_device_constraints(OpenMM::ContextImpl& 
     OpenMM::System const& system = context.getSystem();
     std::vector<Constraint> const open = constraints_to_solve(system);
     if (open.empty()) return nullptr;
-    ConstraintChains const chains = constraint_chains(masses_of(system), open, user);
-    refuse_rings_and_trees(chains, context.getPlatform().getName(), user);
+    ConstraintChains const chains = constraint_chains(masses_of(system), open);
+    refuse_other_shapes(chains, context.getPlatform().getName(), user);
     auto const* data = static_cast<PlatformData*>(context.getPlatformData());
     auto const on_host = unknown ? std::make_shared<ContextConstraints>(context, user) : nullptr;
     if (on_host) apply_in_context(context, on_host);

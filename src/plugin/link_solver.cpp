@@ -19,6 +19,10 @@ namespace {
 constexpr double enough = 1e-12;
 /// Largest number of sweeps, as many as OpenMM's CCMA permits itself.
 constexpr int most_sweeps = 150;
+/// What to do about a step that fails.
+constexpr char const* remedy =
+    "call applyConstraints of the Context if its positions are new, minimise the energy, or take a "
+    "smaller step";
 
 /// Constraints of the chains of one group.
 class GroupLinks {
@@ -29,7 +33,7 @@ class GroupLinks {
     virtual void project(std::span<Vec3 const> positions, std::span<Vec3> velocities) = 0;
 };
 
-/// `Fields` is BranchedFields for trees.
+/// `Fields` is BranchedFields for trees and chains with cross-links.
 template <class Fields>
 class LinksOf final : public GroupLinks {
     using Chains = BeadChainsIn<Fields>;
@@ -47,9 +51,9 @@ class LinksOf final : public GroupLinks {
           at_(group.size),
           momentum_(group.size),
           change_(group.size),
-          direction_(group.size),
+          direction_(group.link_entries()),
           tip_direction_(group.has_tips() ? group.size : 0),
-          bias_(group.size + 1, group.directions),
+          bias_(group.link_entries() + 1, group.directions),
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           ring_ends_(group, space, communicator) {
         for (std::int64_t k = 0; k < group.size; ++k)
@@ -79,7 +83,10 @@ class LinksOf final : public GroupLinks {
         solver_->solve({{}, momentum_.view(), {}, {}, {}}, {{}, change_.view(), {}, {}});
         double const size = space_.largest(
             group_.size, [&](std::int64_t k) -> double { return norm(change_.view().load(k)); });
-        if (!std::isfinite(size)) throw ComputationError("velocities are no longer finite");
+        if (!std::isfinite(size))
+            throw ComputationError(
+                "velocities are no longer finite: set other velocities, minimise the energy, or "
+                "take a smaller step");
         space_.for_each(group_.size,
                         [&](std::int64_t k) { velocities[particle(k)] = change_.view().load(k); });
     }
@@ -117,24 +124,38 @@ class LinksOf final : public GroupLinks {
         Chains const c = chains();
         space_.for_each(group_.size, [c](std::int64_t k) { c.set_direction(k); });
         space_.for_each(std::ssize(tip_), [c](std::int64_t i) { c.set_tip_direction(i); });
-        solver_->assemble_matrices(
-            {direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}});
+        space_.for_each(
+            std::ssize(group_.crosslinks),
+            [c, first = group_.first_crosslink()](std::int64_t i) { c.set_direction(first + i); });
+        try {
+            solver_->assemble_matrices({direction_.view(),
+                                        {},
+                                        group_.has_tips() ? tip_direction_.view() : View<3>{},
+                                        {},
+                                        {}});
+        } catch (ComputationError const&) {
+            refuse_positions();
+        }
     }
     /// Sets the biases to the length errors at position_. Returns the largest relative one, NaN if
     /// a position is.
     double measure() {
         Chains const c = chains();
-        double const along = space_.largest(group_.size, [c](std::int64_t k) -> double {
+        auto const at_link = [c](std::int64_t k) -> double {
             double const off = c.linked(k) ? norm(c.link(k)) - c.length.at(k, 0) : 0.0;
             c.bias.at(k, 0) = off;
             return off == 0 ? 0 : std::fabs(off) / c.length.at(k, 0);
-        });
+        };
+        double const along = space_.largest(group_.size, at_link);
+        double const across = space_.largest(std::ssize(group_.crosslinks),
+                                             [at_link, first = group_.first_crosslink()](
+                                                 std::int64_t i) { return at_link(first + i); });
         double const at_tips = space_.largest(std::ssize(tip_), [c](std::int64_t i) -> double {
             double const off = norm(c.tip_link(i)) - c.tip[i].length;
             c.tip_bias.at(c.tip[i].body, 0) = off;
             return std::fabs(off) / c.tip[i].length;
         });
-        return larger(along, at_tips);
+        return larger(larger(along, across), at_tips);
     }
     /// Moves position_ by one sweep, from the biases of measure().
     void correct() {
@@ -144,7 +165,8 @@ class LinksOf final : public GroupLinks {
             x.store(k, x.load(k) + d.load(k));
         });
     }
-    /// Repeats sweep() until the links are closed.
+    /// Repeats sweep() until the links are closed to `enough` or to rounding, also if `tolerance`
+    /// asks for less.
     template <class Sweep>
     void repeat(double tolerance, Sweep const& sweep) {
         double before = std::numeric_limits<double>::infinity();
@@ -152,8 +174,8 @@ class LinksOf final : public GroupLinks {
             ring_ends_.take(position_.view(), position_.view());
             double const error = measure();
             if (error <= std::min(enough, tolerance)) return;
-            if (!std::isfinite(error)) throw ComputationError("positions are no longer finite");
-            if (error > before / 2 && error <= std::max(tolerance, rounding())) return;
+            if (!std::isfinite(error)) refuse_positions();
+            if (error > before / 2 && error <= rounding()) return;
             if (sweeps == most_sweeps) refuse(error);
             before = error;
             sweep();
@@ -172,15 +194,35 @@ class LinksOf final : public GroupLinks {
         Chains const c = chains();
         for (std::int64_t k = 0; k < group_.size; ++k)
             if (c.error(k) > c.error(worst)) worst = k;
-        throw ComputationError(fmt::format(
-            "constraints stay open by {:.1e} of their length after {} sweeps (near particle {}): "
-            "take a smaller step, or minimise the energy first",
-            error, most_sweeps, particle(worst)));
+        throw ComputationError(
+            fmt::format("constraints stay open by {:.1e} of their length after {} sweeps (near "
+                        "particle {}): {}",
+                        error, most_sweeps, particle(worst), remedy));
+    }
+    /// Throws ComputationError for positions at which the matrices do not exist.
+    [[noreturn]] void refuse_positions() {
+        Chains const c = chains();
+        for (std::int64_t k = 0; k < group_.size; ++k) {
+            double const size = norm(position_.view().load(k));
+            if (!std::isfinite(size))
+                throw ComputationError(fmt::format(
+                    "positions are no longer finite (particle {}): {}", particle(k), remedy));
+            if (c.linked(k) && !(norm(c.link(k)) > 0))
+                throw ComputationError(
+                    fmt::format("particles {} and {}, which a constraint joins, coincide: set "
+                                "other positions",
+                                particle(c.places.inboard(k)), particle(k)));
+        }
+        throw ComputationError(
+            "constraints depend on each other at these positions, as where particles coincide or a "
+            "ring is stretched straight: set other positions");
     }
     Chains chains() {
         Chains c;
-        if constexpr (std::is_same_v<Fields, BranchedFields>)
+        if constexpr (std::is_same_v<Fields, BranchedFields>) {
             c.places.inboard_bead = group_.inboard.data();
+            c.places.crosslink = group_.crosslinks.data();
+        }
         c.places.size = group_.size;
         c.places.is_first = group_.is_first.data();
         c.places.has_link = links_.data();
@@ -225,9 +267,8 @@ std::unique_ptr<Executor> make_executor(int threads) {
 
 class Solver final : public LinkSolver {
   public:
-    Solver(std::vector<double> const& mass, std::vector<Constraint> const& constraints, int threads,
-           std::string const& user)
-        : chains_(constraint_chains(mass, constraints, user)),
+    Solver(std::vector<double> const& mass, std::vector<Constraint> const& constraints, int threads)
+        : chains_(constraint_chains(mass, constraints)),
           communicator_(serial_communicator()),
           executor_(make_executor(worthwhile(threads, constraints.size()))),
           groups_(make_groups(chains_.scene, Axes::world, Handles::projected, false, *communicator_,
@@ -264,8 +305,8 @@ class Solver final : public LinkSolver {
 
 std::unique_ptr<LinkSolver> make_link_solver(std::vector<double> const& mass,
                                              std::vector<Constraint> const& constraints,
-                                             int threads, std::string const& user) {
-    return std::make_unique<Solver>(mass, constraints, threads, user);
+                                             int threads) {
+    return std::make_unique<Solver>(mass, constraints, threads);
 }
 
 }  // namespace catena::plugin

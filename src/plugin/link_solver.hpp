@@ -29,9 +29,9 @@ class LinkSolver {
 };
 
 /// Returns the solver of constraints, on at most `threads` threads. The results do not depend on
-/// their number. `user` and exceptions: constraint_chains().
+/// their number. Exceptions: constraint_chains().
 std::unique_ptr<LinkSolver> make_link_solver(std::vector<double> const& mass,
                                              std::vector<Constraint> const& constraints,
-                                             int threads, std::string const& user);
+                                             int threads);
 
 }  // namespace catena::plugin

@@ -91,7 +91,7 @@ void solve_constraints(OpenMM::ContextImpl& context, std::string const& user) {
     std::vector<Constraint> const open = open_constraints(system, settled(constraints));
     if (open.empty()) return;
     auto solver = std::make_unique<ChainConstraints>(
-        make_link_solver(masses_of(system), open, threads_of(context), user), user);
+        make_link_solver(masses_of(system), open, threads_of(context)), user);
     delete constraints.ccma;
     constraints.ccma = solver.release();
 }

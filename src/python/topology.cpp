@@ -5,6 +5,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -51,13 +52,16 @@ class SceneSites {
 
 Topology topology_of(std::vector<std::tuple<std::string, std::int64_t>> const& chains, bool rings,
                      std::vector<double> masses, std::vector<std::string> residues,
-                     std::optional<std::tuple<double, double, double>> const& box, bool si) {
+                     std::optional<std::tuple<double, double, double>> const& box, bool si,
+                     std::vector<std::vector<std::int64_t>> parents) {
     Topology topology;
     std::int64_t first = 0;
     for (auto const& [name, count] : chains) {
         topology.chains.push_back({name, first, count, true, rings});
         first += count;
     }
+    for (std::size_t c = 0; c < std::min(parents.size(), topology.chains.size()); ++c)
+        topology.chains[c].parent = std::move(parents[c]);
     topology.mass = std::move(masses);
     topology.residue = std::move(residues);
     if (box) topology.box = {std::get<0>(*box), std::get<1>(*box), std::get<2>(*box)};
@@ -83,7 +87,7 @@ std::optional<std::tuple<double, double, double>> box_of(Topology const& topolog
 void add_topology(nb::module_& module) {
     nb::class_<Topology>(module, "Topology", "Chains, masses and residues of the sites of frames.")
         .def_static("of", &topology_of, nb::arg("chains"), nb::arg("rings"), nb::arg("masses"),
-                    nb::arg("residues"), nb::arg("box").none(), nb::arg("si"))
+                    nb::arg("residues"), nb::arg("box").none(), nb::arg("si"), nb::arg("parents"))
         .def_prop_ro("chains", &chains_of)
         .def_prop_ro("masses", [](Topology const& t) { return t.mass; })
         .def_prop_ro("residues", [](Topology const& t) { return t.residue; })

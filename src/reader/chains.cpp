@@ -143,6 +143,106 @@ void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
                     shown(request.name()), made.cut_links == 1 ? "is" : "are", made.first_cut));
 }
 
+/// Notes the residues that cross-links join, if they have other numbers in the structure file.
+void note_residues(std::vector<CrossLink> const& links, ChainRequest const& request) {
+    if (request.part == nullptr) return;
+    std::vector<PdbSite> const& sites = request.part->from.sites;
+    std::string joined;
+    bool differ = false;
+    for (CrossLink const& link : links) {
+        auto const inboard = static_cast<std::size_t>(link.inboard),
+                   outboard = static_cast<std::size_t>(link.outboard);
+        if (std::max(inboard, outboard) >= sites.size()) return;
+        PdbSite const &first = sites[inboard], &last = sites[outboard];
+        differ |= (!first.label.empty() && first.label != std::to_string(inboard + 1)) ||
+                  (!last.label.empty() && last.label != std::to_string(outboard + 1));
+        joined += fmt::format("{}{} {} to {} {}", joined.empty() ? "" : ", ", first.residue,
+                              first.label, last.residue, last.label);
+    }
+    if (differ)
+        request.scene.note(fmt::format(
+            "`crosslinks` count the beads of chain `{}` from 1, not by the residue numbers of "
+            "`{}`: they join {}",
+            shown(request.name()), request.part->from.file, joined));
+}
+
+/// Notes a protein whose first and last residues are joined but have the charges and masses of
+/// termini.
+void note_joined_ends(ChainSpec const& chain, ChainRequest const& request) {
+    if (request.residues.empty() || request.system || request.fields.find("charge_termini") ||
+        !chain.is_beads() || chain.is_branched())
+        return;
+    auto const last = static_cast<std::int64_t>(chain.size()) - 1;
+    bool const joined =
+        chain.is_ring() ||
+        std::any_of(chain.crosslinks.begin(), chain.crosslinks.end(), [&](CrossLink const& link) {
+            return link.inboard == 0 && link.outboard == last;
+        });
+    calvados2::ChargedTermini const ends = request.termini();
+    if (!joined || !(ends.n || ends.c)) return;
+    request.scene.note(
+        fmt::format("chain `{}` is closed, and its ends have the charges and masses of termini: "
+                    "write `charge_termini: none` for a cyclic peptide, or `both` to keep them",
+                    shown(request.name())));
+}
+
+/// True if a file gives the positions of the beads.
+bool is_given(ChainRequest const& request, Node const& source) {
+    Node const* const conformation = request.fields.find("conformation");
+    return request.fields.find("positions") || source.key == "pdb" ||
+           (conformation && conformation->kind == Node::Kind::map);
+}
+/// True if Catena makes the positions of the beads.
+bool is_generated(ChainRequest const& request, Node const& source) {
+    return source.key != "bodies" && !is_given(request, source);
+}
+
+/// Throws InputError for a ring of a sequence whose start is generated: its ends are anywhere.
+void refuse_ring_of_generated(ChainSpec const& chain, ReadTip const& tip,
+                              ChainRequest const& request, Node const& source) {
+    bool const sequence = source.key == "sequence" || source.key == "fasta";
+    if (!sequence || !is_generated(request, source) || !tip.joint.ring || chain.is_branched())
+        return;
+    fail(*request.node.find("tip"), "a ring of a sequence whose start is generated",
+         fmt::format("leave `tip` out and write `crosslinks: [[1, {}, {:.2g}]]`, which pulls the "
+                     "ends together, or give positions",
+                     chain.size(), chain.beads.length.back()));
+}
+
+/// Gives a cross-link without a length that of the System, if that joins its beads.
+void take_length(CrossLink& link, ChainRequest const& request) {
+    if (link.length > 0 || !request.system || request.links_as_given()) return;
+    double const length =
+        request.system->length(request.particle + link.inboard, request.particle + link.outboard);
+    if (length > 0) link.length = length;
+}
+
+/// Adds the entry's cross-links. Where the System joins two beads its length counts, unless the
+/// entry gives one or has `links: as_given`. Returns Draft::open_crosslinks.
+std::vector<bool> cross_link(ChainSpec& chain, ChainRequest const& request, Node const& source,
+                             bool quiet) {
+    Node const* const node = request.fields.find("crosslinks");
+    if (!node) return {};
+    bool const generated = is_generated(request, source);
+    chain.crosslinks = read_crosslinks(*node, chain);
+    if (chain.name.empty()) chain.name = request.name();
+    for (CrossLink& link : chain.crosslinks) {
+        take_length(link, request);
+        if (link.length == 0 && generated)
+            fail(*node,
+                 fmt::format("the cross-link of beads {} and {} has no length, and the start is "
+                             "generated",
+                             link.inboard + 1, link.outboard + 1),
+                 fmt::format("give one, as in [{}, {}, {:.2g}]", link.inboard + 1,
+                             link.outboard + 1, chain.beads.length.back()));
+    }
+    note_residues(chain.crosslinks, request);
+    std::vector<bool> open;
+    for (CrossLink const& link : chain.crosslinks) open.push_back(link.length == 0);
+    fit_crosslinks(chain, {request.scene, *node, generated, quiet});
+    return open;
+}
+
 /// Reads one entry and makes its copies.
 class ChainReader {
   public:
@@ -219,7 +319,7 @@ class ChainReader {
         first.name = count_ == 1 ? name : name + "-1";
         drafts.push_back({std::move(first), &request_.node, free_to_move, shape, first_particle});
         if (is_rna(request_)) drafts.back().excluded = excluded_of_nucleotides;
-        drafts.back().open_crosslinks = open_crosslinks(drafts.back().chain);
+        drafts.back().open_crosslinks = open_crosslinks_;
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
@@ -231,7 +331,7 @@ class ChainReader {
             drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move,
                               shape, request_.particle});
             drafts.back().excluded = drafts[at].excluded;
-            drafts.back().open_crosslinks = open_crosslinks(drafts.back().chain);
+            drafts.back().open_crosslinks = open_crosslinks_;
             drafts.back().chain.name = copy_name;
         }
         drafts.back().bytes = bytes;
@@ -325,29 +425,14 @@ class ChainReader {
             terms::read_bodies(source_, request_.scene.forces, chain);
         // No bead of a branched chain is known to be the end of a protein.
         if (chain.is_branched()) request_.protein_ends = {false, false};
+        refuse_ring_of_generated(chain, tip_, request_, source_);
         join_tip(chain, tip_, request_);
-        cross_link(chain, copy);
+        open_crosslinks_ = cross_link(chain, request_, source_, copy > 0);
+        note_joined_ends(chain, request_);
         if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);
         note_lost_rates(chain, request_);
         return chain;
-    }
-
-    /// Adds the entry's cross-links. Where the System joins two beads its length counts, unless the
-    /// entry gives one or has `links: as_given`.
-    void cross_link(ChainSpec& chain, std::int64_t copy) const {
-        Node const* const node = request_.fields.find("crosslinks");
-        if (!node) return;
-        chain.crosslinks = read_crosslinks(*node, chain);
-        if (chain.name.empty()) chain.name = request_.name();
-        for (CrossLink& link : chain.crosslinks)
-            if (link.length == 0 && request_.system && !request_.links_as_given())
-                if (double const length = request_.system->length(
-                        request_.particle + link.inboard, request_.particle + link.outboard);
-                    length > 0)
-                    link.length = length;
-        bool const far = source_.key != "bodies" && !is_given();
-        fit_crosslinks(chain, {request_.scene, *node, far, copy > 0});
     }
 
     /// Sets the kind of start velocities and clears the given ones if they are not used. `given` is
@@ -378,17 +463,11 @@ class ChainReader {
     /// positions.
     bool movable(ChainSpec const& chain) const {
         if (count_ > 1) return true;
-        return is_free(chain) && source_.key != "bodies" && !is_given();
+        return is_free(chain) && source_.key != "bodies" && !is_given(request_, source_);
     }
     /// True for a chain of beads that nothing attaches to the ground.
     bool is_free(ChainSpec const& chain) const {
         return chain.is_beads() && chain.base == Base::free && tip_.kind == Tip::free;
-    }
-    /// True if a file gives the positions of the beads.
-    bool is_given() const {
-        Node const* const conformation = request_.fields.find("conformation");
-        return request_.fields.find("positions") || source_.key == "pdb" ||
-               (conformation && conformation->kind == Node::Kind::map);
     }
     /// Permission to regrow the chain, see Regrowth.
     Regrowth regrown(ChainSpec const& chain) const {
@@ -396,22 +475,9 @@ class ChainReader {
             (source_.key != "sequence" && source_.key != "fasta"))
             return Regrowth::no;
         Node const* const conformation = request_.fields.find("conformation");
-        bool const any_shape =
-            conformation ? conformation->text == "self_avoiding" : count_ > 1 && !is_given();
+        bool const any_shape = conformation ? conformation->text == "self_avoiding"
+                                            : count_ > 1 && !is_given(request_, source_);
         return any_shape ? Regrowth::yes : Regrowth::if_asked;
-    }
-    /// Draft::open_crosslinks of the copy made last.
-    std::vector<bool> open_crosslinks(ChainSpec const& chain) const {
-        std::vector<bool> open;
-        Node const* const node = request_.fields.find("crosslinks");
-        bool const by_system = request_.system && !request_.links_as_given();
-        for (std::size_t c = 0; node && c < node->items.size(); ++c)
-            open.push_back(
-                node->items[c].items.size() < 3 &&
-                !(by_system &&
-                  request_.system->length(request_.particle + chain.crosslinks[c].inboard,
-                                          request_.particle + chain.crosslinks[c].outboard) > 0));
-        return open;
     }
     /// Estimates the memory, bytes, of all chains up to this entry's. Throws InputError before
     /// chains are made that cannot fit.
@@ -436,6 +502,8 @@ class ChainReader {
     bool warm_;
     /// Tip of all copies.
     ReadTip tip_;
+    /// Draft::open_crosslinks of the copy made last.
+    std::vector<bool> open_crosslinks_;
     /// Number of copies.
     std::int64_t count_ = 1;
     /// The concentration that decides the number of copies, or nullptr.

@@ -102,7 +102,7 @@ TEST(SameBits, BranchedChains) {
                           "20, length: 0.4}}}\n";
     std::string const crossed =
         "  - {name: c, count: 4, generator: {freely_jointed: {beads: 60, "
-        "length: 0.4}}, crosslinks: [[3, 30], [20, 50]]}\n";
+        "length: 0.4}}, crosslinks: [[3, 30, 0.6], [20, 50, 0.6]]}\n";
     for (std::string const& chains :
          {beads, beads + tree + generated("link", 300, false) + star, tree + crossed})
         expect_same_bits(scene_of(chains), chains, threads_fit(), {Handles::projected});

@@ -149,8 +149,10 @@ class GpuAbsolute : public ::testing::TestWithParam<AbsoluteScene> {
                                            std::move(solver))
                       : make_rigid_dynamics(*groups_[0], scene_, *executor_, *communicator_,
                                             std::move(solver));
-        device_ = (beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics)(
-            *groups_[0], scene_, *executor_, *communicator_);
+        auto const make = groups_[0]->is_branched() ? cuda::make_branched_dynamics
+                          : beads                   ? cuda::make_bead_dynamics
+                                                    : cuda::make_rigid_dynamics;
+        device_ = make(*groups_[0], scene_, *executor_, *communicator_);
     }
     std::vector<StateArray> observed(AbsoluteDynamics& dynamics) const {
         ObservedMotion const motion = dynamics.observed();
@@ -311,21 +313,21 @@ TEST_P(GpuConstrained, AHundredStepsLeaveTheBitsOfTheHost) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, GpuConstrained,
-    ::testing::Values(AbsoluteScene{"free_beads", free_beads},
-                      AbsoluteScene{"many_beads", many_beads},
-                      AbsoluteScene{"longest_beads", longest_beads},
-                      AbsoluteScene{"free_bodies", free_bodies},
-                      AbsoluteScene{"hanging_bodies", hanging_bodies},
-                      AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
-                      AbsoluteScene{"held_bodies", held_bodies},
-                      AbsoluteScene{"carrying_bodies", carrying_bodies},
-                      AbsoluteScene{"free_domains", free_domains},
-                      AbsoluteScene{"hanging_domains", hanging_domains},
-                      AbsoluteScene{"held_domains", held_domains},
-                      AbsoluteScene{"held_domains_full", held_domains, Handles::full},
-                      AbsoluteScene{"ring_of_beads", ring_of_beads},
-                      AbsoluteScene{"ring_of_domains", ring_of_domains},
-                      AbsoluteScene{"ring_of_bodies", ring_of_bodies}),
+    ::testing::Values(
+        AbsoluteScene{"free_beads", free_beads}, AbsoluteScene{"branched_beads", branched_beads},
+        AbsoluteScene{"brush_of_beads", brush_of_beads}, AbsoluteScene{"many_beads", many_beads},
+        AbsoluteScene{"longest_beads", longest_beads}, AbsoluteScene{"free_bodies", free_bodies},
+        AbsoluteScene{"hanging_bodies", hanging_bodies},
+        AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
+        AbsoluteScene{"held_bodies", held_bodies},
+        AbsoluteScene{"carrying_bodies", carrying_bodies},
+        AbsoluteScene{"free_domains", free_domains},
+        AbsoluteScene{"hanging_domains", hanging_domains},
+        AbsoluteScene{"held_domains", held_domains},
+        AbsoluteScene{"held_domains_full", held_domains, Handles::full},
+        AbsoluteScene{"ring_of_beads", ring_of_beads},
+        AbsoluteScene{"ring_of_domains", ring_of_domains},
+        AbsoluteScene{"ring_of_bodies", ring_of_bodies}),
     name_of_scene);
 
 }  // namespace

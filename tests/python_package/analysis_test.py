@@ -201,6 +201,9 @@ class Analyses(Case):
         direct = catena.analysis.analyse(x, [6, 6], masses=np.linspace(1, 2, 12), box=[9, 9, 9], times=2.0 * np.arange(20), cutoff=1.0)
         for each, other in zip(found.quantities, direct.quantities):
             np.testing.assert_allclose(each.mean, other.mean, rtol=1e-4, atol=1e-6, err_msg=each.name)
+        universe.add_TopologyAttr("bonds", [(k, k + 1) for k in range(11) if k not in (2, 5)])
+        self.assertIn("each of 2 segments is taken as a chain, but bonds make 3 molecules", " ".join(catena.analysis.analyse(universe.atoms, cutoff=0).notes))
+        self.assertEqual(len(catena.analysis.analyse(universe.atoms, [3, 3, 6], cutoff=0).kinds), 3)
         with self.assertRaisesRegex(catena.InputError, "do not follow each other"):
             catena.analysis.analyse(universe.atoms[[0, 6, 1]])
 

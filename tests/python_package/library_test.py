@@ -43,7 +43,7 @@ def fake_openmm(version, library=None):
 
 class Libraries(Case):
     def run_python(self, program, first=None, **variables):
-        path = os.pathsep.join([str(first.absolute())] * (first is not None) + [os.environ.get("PYTHONPATH", "")])
+        path = os.pathsep.join(([str(first.absolute())] if first else []) + [os.environ.get("PYTHONPATH", "")])
         environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMI", "SLURM_", "MV2_"))}
         environment.update({"PYTHONPATH": path, **variables})
         done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False, env=environment)

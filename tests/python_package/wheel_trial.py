@@ -85,9 +85,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--wheels", required=True, metavar="FOLDER")
     parser.add_argument("--openmm", required=True, metavar="VERSION", help="OpenMM of the build, and the one beside it")
-    parser.add_argument("--others", default="8.6.0,8.5.2", metavar="SAME,OLDER", help="another version of its series, and of an older one")
+    parser.add_argument("--older", default="8.5.2", metavar="VERSION", help="one of an older series")
     options = parser.parse_args()
-    same, older = options.others.split(",")
+    older = options.older
     series = ".".join(options.openmm.split(".")[:2])
     scene = repr(os.path.join(INPUTS, "alpha-synuclein.yaml"))
     with tempfile.TemporaryDirectory(prefix=f"catena-wheel-{os.getpid()}-") as folder:
@@ -97,7 +97,7 @@ def main():
         python = f"CPython {sys.version_info.major}.{sys.version_info.minor}"
         print(f"wheel: {python} takes {os.path.basename(wheel)}, {os.path.getsize(wheel) / 2**20:.1f} MiB")
         print(f"wheel: {python} without openmm", environment.run(WITHOUT.replace("SCENE", scene).replace("SERIES", series)).strip())
-        for version in (options.openmm, same):
+        for version in dict.fromkeys((options.openmm, f"{series}.0")):
             environment.install(f"openmm=={version}")
             print(f"wheel: {python}", environment.run(WITH.replace("SCENE", scene)).strip())
         environment.install(f"openmm=={older}")

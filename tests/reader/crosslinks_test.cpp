@@ -150,6 +150,43 @@ TEST(CrossLinksOfAScene, AreRefusedInOneLine) {
               std::string::npos);
 }
 
+TEST(CrossLinksOfAScene, OfGeneratedStartsNeedALength) {
+    for (std::string const start :
+         {"sequence: GGGGGG, model: calvados2",
+          "generator: {freely_jointed: {beads: 9, length: 0.38}}",
+          "sequence: GGGGGG, model: calvados2, conformation: self_avoiding"}) {
+        std::string const chain = "chains: [{" + start + ", crosslinks: ";
+        std::string const message = refusal_of(chain + "[[1, 5]]}]");
+        EXPECT_NE(message.find("the cross-link of beads 1 and 5 has no length, and the start is "
+                               "generated (chains[0].crosslinks"),
+                  std::string::npos)
+            << message;
+        EXPECT_NE(message.find("give one, as in [1, 5, 0.38]"), std::string::npos) << message;
+        EXPECT_EQ(parse_scene(chain + "[[1, 5, 0.55]]}]", "s.yaml").chains.at(0).crosslinks,
+                  (std::vector<CrossLink>{{0, 4, 0.55}}));
+    }
+}
+
+TEST(CrossLinksOfAScene, CloseRingsOfSequences) {
+    std::string const chain = "chains: [{sequence: GGGGGG, model: calvados2, ";
+    for (std::string const ring : {"tip: ring", "tip: {ring: {type: link, length: 0.38}}"}) {
+        std::string const message = refusal_of(chain + ring + "}]");
+        EXPECT_NE(message.find("a ring of a sequence whose start is generated"), std::string::npos)
+            << message;
+        EXPECT_NE(message.find("write `crosslinks: [[1, 6, 0.38]]`"), std::string::npos) << message;
+    }
+    std::string const closed = chain + "crosslinks: [[1, 6, 0.38]]",
+                      note = "chain `chain-1` is closed, and its ends have the charges and masses";
+    EXPECT_TRUE(notes(parse_scene(closed + "}]", "s.yaml"), note));
+    for (std::string const ends : {", charge_termini: none", ", charge_termini: both"})
+        EXPECT_FALSE(notes(parse_scene(closed + ends + "}]", "s.yaml"), note));
+    EXPECT_FALSE(notes(parse_scene(chain + "crosslinks: [[1, 5, 0.38]]}]", "s.yaml"), note));
+    EXPECT_FALSE(notes(parse_scene(closed + "}]\nforces: {openmm: {builder: calvados2, "
+                                            "charge_termini: none}}",
+                                   "s.yaml"),
+                       note));
+}
+
 TEST(CrossLinksOfAScene, ThatAreRedundantHaveNoFixmanPotential) {
     EXPECT_NE(refusal_of("chains: [{bodies: [{mass: 1, position: [0, 0, 0]}, "
                          "{mass: 1, position: [1, 0, 0], joint: {type: link}}, "

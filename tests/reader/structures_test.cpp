@@ -46,6 +46,21 @@ TEST_F(Structures, one_chain_is_chosen_and_the_others_are_not_looked_at) {
     EXPECT_EQ(refusal_with("chain: Q"), "`a.pdb` holds no chain Q" + at_ + "take one of A, B");
 }
 
+TEST_F(Structures, cross_links_count_beads_and_name_residues_of_other_numbers) {
+    auto const noted = [&](int first) {
+        write("a.pdb", pdb_text(strand({"CYS", "GLY", "ALA", "SER", "CYS"}, "A", first, 0)));
+        for (std::string const& note : with("crosslinks: [[1, 5]]").notes)
+            if (note.find("`crosslinks` count") != std::string::npos) return note;
+        return std::string();
+    };
+    EXPECT_EQ(noted(1), "");
+    EXPECT_EQ(noted(11),
+              "`crosslinks` count the beads of chain `chain-1` from 1, not by the residue numbers "
+              "of `a.pdb`: they join CYS 11 to CYS 15");
+    EXPECT_NE(refusal_with("crosslinks: [[11, 15]]").find("a cross-link ends at bead 11 of 5"),
+              std::string::npos);
+}
+
 TEST_F(Structures, several_chains_of_a_file_bear_its_names) {
     std::vector<AtomLine> atoms = strand(gas_, "A", 1, 0) + strand(gas_, "B", 1, 0, 20);
     atoms.back().ends_chain = true;

@@ -267,9 +267,10 @@ TEST(Rna, OfWrittenBeadsMustBeNucleotides) {
     EXPECT_FALSE(energies.contains("backbone-angles"));
     std::string const refused = complaint(
         [&] { energies_of(parse_scene(chain + last + "1}\n" + forces_text(), "rna.yaml")); });
-    EXPECT_EQ(refused,
-              "the backbone bead 1 of RNA has links to beads 2 and 4, where CALVADOS has one "
-              "(rna.yaml): hang one base on each bead RBC, and let one follow it");
+    EXPECT_EQ(
+        refused,
+        "the backbone bead 1 of RNA has links to beads 2 and 4, where CALVADOS has one "
+        "(rna.yaml): hang one base on each bead RBC, let one follow it, and leave out cross-links");
 }
 
 /// One-letter codes of amino acids are names of bases, too: A, C and G. They must not become bases.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "clock.hpp"
 #include "error.hpp"
 
 namespace catena::dca {
@@ -58,8 +59,11 @@ void CrossLinkedSolver::respond(std::int64_t round, AccelerationsView const& out
 void CrossLinkedSolver::assemble_matrices(ConfigurationView const& configuration) {
     direction_ = configuration.direction;
     tree_->assemble_matrices(configuration);
+    double const start = seconds_now();
     for (std::int64_t round = 0; round < rounds_; ++round) {
+        double const begun = seconds_now();
         respond(round, {{}, acceleration_.view(), {}, {}});
+        swept_for_matrices_ += seconds_now() - begun;
         for (std::size_t i = 0; i < links_.size(); ++i)
             for (Eigen::Index row = 0; round < matrices_[i].cols() && row < matrices_[i].rows();
                  ++row)
@@ -73,6 +77,7 @@ void CrossLinkedSolver::assemble_matrices(ConfigurationView const& configuration
             size[row] = free_response(of.first + static_cast<std::size_t>(row));
         if (!of.system.factorize(symmetric, size)) refuse(of);
     }
+    of_matrices_ += seconds_now() - start;
 }
 
 /// The forces of cross-links cancel what the chains' answer without them leaves open.
@@ -104,6 +109,8 @@ void CrossLinkedSolver::solve(LoadsView const& loads, AccelerationsView const& o
 
 SolverReport CrossLinkedSolver::report() const {
     SolverReport r = tree_->report();
+    r.matrix_seconds += of_matrices_;
+    r.bias_seconds -= swept_for_matrices_;
     r.memory_bytes +=
         static_cast<std::int64_t>(2 * 3 * sizeof(double)) * group_.size +
         static_cast<std::int64_t>(sizeof(LocalCrossLink)) * std::ssize(group_.crosslinks);

@@ -57,6 +57,8 @@ class CrossLinkedSolver final : public ChainSolver {
     std::int64_t rounds_ = 0;
     ConstView<3> direction_;
     Field<3> force_, acceleration_;
+    /// Seconds for the systems of cross-links, and the part of bias sweeps in them.
+    double of_matrices_ = 0, swept_for_matrices_ = 0;
 };
 
 }  // namespace catena::dca

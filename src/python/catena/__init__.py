@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from catena._library import load as _load_library
 
-_core = _load_library()
+_load_library()
 
-from catena import analysis, plot
+from catena import _core, analysis, plot
 from catena.errors import ComputationError, Error, InputError, Note
 from catena.model import Model, check, load
 from catena.record import Record

@@ -136,7 +136,9 @@ class Analysis:
         found = [each for each in self.maps if each.within == within and kinds in (None, each.kinds)]
         if len(found) != 1:
             names = ", ".join(sorted({" and ".join(each.kinds) for each in self.maps if each.within == within})) or "none"
-            raise InputError(f"there are {len(found)} such contact maps (contact_map): name kinds of {names}")
+            where = "within chains" if within else "between chains"
+            what = f"there are {len(found)} contact maps {where}" if found else f"there is no contact map {where}"
+            raise InputError(f"{what} (contact_map): {'name two kinds of ' + names if names != 'none' else 'analyse several chains, with a cutoff' if not within else 'analyse with a cutoff'}")
         return found[0]
 
 
@@ -172,6 +174,9 @@ def _only(all_: list[Any], what: str, name: str, kind: str | None) -> Any:
     if len(found) == 1:
         return found[0]
     if not found:
+        kinds = sorted({each.kind for each in all_ if each.name == name})
+        if kinds:
+            raise InputError(f"there is no {what} {name!r} of {kind} (Analysis): there are those of {', '.join(each or 'all' for each in kinds)}")
         known = ", ".join(sorted({each.name for each in all_ if kind in (None, each.kind)})) or "none"
         raise InputError(f"there is no {what} {name!r}{f' of {kind}' if kind else ''} (Analysis): there are {known}")
     raise InputError(f"there is a {what} {name!r} for each kind of chains (Analysis): name one of {', '.join(each.kind or 'all' for each in found)}")

@@ -21,34 +21,67 @@ def is_quantity(value: Any) -> bool:
 
 
 def number_of(quantity: Any, key: str, si: bool) -> Any:
-    """Returns the number or numbers of a quantity in the unit that a key of a scene has.
+    """Returns the number or numbers of a quantity in the unit that a key of a scene has; a text with unit for ``concentration``.
 
-    Raises InputError for a key without unit, and for a quantity of another dimension.
+    Quantities per particle, such as a force in pN or a mass in g/mol, are converted to those per mole or back. Raises
+    InputError for a key without unit, and for a quantity of another dimension.
     """
+    if _general(key).endswith("concentration"):
+        return _concentration(quantity, key)
     wanted = _units_of_keys().get(_general(key), ())
     known = [powers for words in wanted if (powers := _powers(words, si)) is not None]
     if len(known) < max(1, len(wanted)):
-        reason = f"the unit of the key depends on other keys, {wanted[0]}" if wanted else "the key takes no unit"
-        raise InputError(f"{reason} ({key}): give a plain number instead of {quantity}")
+        if not wanted:
+            raise InputError(f"the key takes no unit, or is unknown ({key}): give a plain number instead of {quantity}, or another key")
+        raise InputError(f"the unit of the key depends on other keys, {wanted[0]} ({key}): give a plain number in that unit instead of {quantity}")
     for powers in known:
+        number = _in_units(quantity, powers)
+        if number is not None:
+            return number
+    units = " or ".join(_shown(powers) for powers in known)
+    raise InputError(f"{quantity} does not have the unit of the key, {' or '.join(wanted)} ({key}): give a quantity that {units} can express, or a plain number")
+
+
+def _concentration(quantity: Any, key: str) -> str:
+    """Returns a concentration as scenes write it."""
+    for name, powers in (("g/l", [("gram", 1), ("liter", -1)]), ("mol/l", [("mole", 1), ("liter", -1)])):
+        number = _in_units(quantity, powers)
+        if number is not None:
+            return f"{float(number)!r} {name}"
+    raise InputError(f"{quantity} is no concentration ({key}): give one such as '5 mg/ml' or '2 mmol/l', or a quantity of this kind")
+
+
+def _in_units(quantity: Any, powers: list[tuple[str, int]]) -> Any:
+    """Returns the number of a quantity in the product of units, also of one per particle instead of per mole; None for other dimensions."""
+    convert = _openmm_number if hasattr(quantity, "value_in_unit") else _pint_number
+    for moles in (0, 1, -1):
         try:
-            return _openmm_number(quantity, powers) if hasattr(quantity, "value_in_unit") else _pint_number(quantity, powers)
-        except TypeError:
+            return convert(quantity, powers, moles)
+        except TypeError:  # pint's DimensionalityError is one
             pass
-    raise InputError(f"{quantity} does not have the unit of the key, {' or '.join(wanted)} ({key}): give such a quantity, or a plain number")
+    return None
 
 
-def _openmm_number(quantity: Any, powers: list[tuple[str, int]]) -> Any:
+def _shown(powers: list[tuple[str, int]]) -> str:
+    return " ".join(name if power == 1 else f"{name}^{power}" for name, power in powers)
+
+
+def _openmm_number(quantity: Any, powers: list[tuple[str, int]], moles: int) -> Any:
+    """Returns the number of a quantity, times Avogadro's to the power of ``moles``, in the product of units."""
     from openmm import unit
 
     wanted = unit.dimensionless
     for name, power in powers:
         wanted = wanted * getattr(unit, name) ** power
-    return quantity.value_in_unit(wanted)
+    return (quantity * unit.AVOGADRO_CONSTANT_NA**moles if moles else quantity).value_in_unit(wanted)
 
 
-def _pint_number(quantity: Any, powers: list[tuple[str, int]]) -> Any:
-    return quantity.to(quantity._REGISTRY.parse_units(" * ".join(f"{name} ** {power}" for name, power in powers))).magnitude
+def _pint_number(quantity: Any, powers: list[tuple[str, int]], moles: int) -> Any:
+    """Returns what ``_openmm_number`` does."""
+    units = quantity._REGISTRY
+    if moles:
+        quantity = quantity * (6.02214076e23 / units.mole) ** moles
+    return quantity.to(units.parse_units(" * ".join(f"{name} ** {power}" for name, power in powers))).magnitude
 
 
 def _powers(words: str, si: bool) -> list[tuple[str, int]] | None:

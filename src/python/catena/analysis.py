@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from catena import _core
-from catena._frames import Frames, doubles, frames_of, is_group
+from catena._frames import Frames, atoms_of, doubles, frames_of, require_one_chain
 from catena._frames import positions_of as _positions_of
 from catena._results import Analysis, ContactMap, Curve, Quantity, analysis_of
 from catena.errors import InputError
@@ -50,8 +50,11 @@ def radius_of_gyration(positions: Any, masses: Any = None) -> Estimate:
     """Returns the radius of gyration of one chain, weighted by mass.
 
     ``masses`` has shape (n_beads,). The default is the masses of the atom group or ``Record``, or equal masses for an
-    array. The result has the array's unit of length, or nm for an atom group.
+    array. The result has the array's unit of length, or nm for an atom group. Records and atom groups of several
+    chains are refused: ``analyse`` has their numbers.
     """
+    positions = atoms_of(positions)
+    require_one_chain(positions, "radius_of_gyration")
     frames = _positions_of(positions)
     if masses is None:
         masses = positions.masses if hasattr(positions, "masses") else np.ones(frames.shape[1])
@@ -59,7 +62,8 @@ def radius_of_gyration(positions: Any, masses: Any = None) -> Estimate:
 
 
 def end_to_end_distance(positions: Any) -> Estimate:
-    """Returns the distance between the first and the last bead of one chain."""
+    """Returns the distance between the first and the last bead of one chain, as ``radius_of_gyration`` does."""
+    require_one_chain(positions, "end_to_end_distance")
     return _estimate_of(_core.end_to_end_distance(_positions_of(positions)))
 
 
@@ -151,7 +155,7 @@ def _analysis_of_frames(
     if cutoff is not None and not 0 <= cutoff < np.inf:
         raise InputError(f"the cutoff is {cutoff} (cutoff): give a distance, or 0 for no contacts")
     steps = list(range(len(frames.positions)))
-    times = steps if frames.times is None else frames.times
+    times = steps if frames.times is None else frames.times.tolist()
     try:
         found = _core.analyse(
             frames.topology, frames.positions, frames.edges, steps, times, discard, cutoff, fit, axes[slab], slab == "auto", bins
@@ -163,7 +167,7 @@ def _analysis_of_frames(
 
 def _in_python(message: str) -> str:
     """Returns a message of the program with its options as the arguments that they are here."""
-    return re.sub(r"--slab ([xyz])", r"slab='\1'", message).replace("--fit MIN,MAX", "fit=(least, most)").replace("--", "")
+    return re.sub(r"--slab ([xyz])", r"slab='\1'", message).replace("--fit MIN,MAX", "fit=(least, most)").replace("leave --slab out", "give a box, or leave slab out").replace("--", "")
 
 
 def _estimate_of(values: np.ndarray) -> Estimate:

@@ -127,7 +127,10 @@ class Model:
             else:
                 read = _core.Model.from_file(os.fspath(self._scene))
             for key, value in self._changes:
-                read.set(key, value)
+                try:
+                    read.set(key, value)
+                except InputError as error:
+                    raise InputError(str(error).replace("(--set ", "(Model.set: ")) from None
             self._read = read
         return self._read
 
@@ -145,7 +148,7 @@ def check(scene: Scene) -> list[str]:
     """Checks a scene and returns its notes: what the reader assumed, changed or left out, and steps near a limit.
 
     Raises InputError with the program's message if the scene is wrong, if beads coincide, or if the time step is too
-    long for the scene's springs. OpenMM's forces are checked only when a ``Simulation`` is made.
+    long for the scene's springs. With OpenMM's forces it computes those of the start, and refuses overlaps.
     """
     return model_of(scene)._core().check()
 

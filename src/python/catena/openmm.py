@@ -1,7 +1,7 @@
 """Integrators for plain OpenMM scripts, whose constraints Catena solves.
 
-Constraints that form chains, rings and trees are solved by the divide-and-conquer algorithm instead of CCMA. Rigid
-water stays with SETTLE. All else is OpenMM's: states, forces, reporters, checkpoints, XML.
+Constraints are solved by the divide-and-conquer algorithm instead of CCMA: of every shape on the platforms CPU and
+Reference, those that form chains on GPUs. Rigid water stays with SETTLE. All else is OpenMM's: states, forces, reporters, checkpoints, XML.
 
     from catena.openmm import ChainLangevinIntegrator
     integrator = ChainLangevinIntegrator(300 * unit.kelvin, 0.01 / unit.picosecond, 0.01 * unit.picosecond)
@@ -10,6 +10,7 @@ water stays with SETTLE. All else is OpenMM's: states, forces, reporters, checkp
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -35,8 +36,12 @@ except InputError as error:
 __all__ = ["ChainLangevinIntegrator", "ChainVerletIntegrator", "prepared"]
 
 
-def _number(value: Any, in_unit: unit.Unit) -> float:
-    return float(value.value_in_unit(in_unit) if unit.is_quantity(value) else value)
+def _number(value: Any, in_unit: unit.Unit, name: str) -> float:
+    """Returns a number in a unit. Raises InputError for texts and for numbers that are not finite."""
+    number = value.value_in_unit(in_unit) if unit.is_quantity(value) else value
+    if isinstance(number, (str, bytes)) or not math.isfinite(number):
+        raise InputError(f"the {name} is {value!r} (catena.openmm): give a finite number, or a quantity")
+    return float(number)
 
 
 def _made_of(name: str, **properties: float) -> openmm.Integrator:
@@ -50,16 +55,16 @@ class ChainLangevinIntegrator(openmm.LangevinMiddleIntegrator):
     """OpenMM's LangevinMiddleIntegrator, with constraints solved by the divide-and-conquer algorithm.
 
     Parameters are those of OpenMM: temperature (K), friction (1/ps) and step (ps), as numbers or quantities. Creating
-    a Context raises an OpenMMException if constraints form loops with branches, or on a platform other than CPU and
-    Reference. A step raises one if constraints stay open.
+    a Context on a GPU raises an OpenMMException if constraints form rings, trees or nets. A step raises one if
+    constraints stay open.
     """
 
     def __init__(self, temperature: Any, friction: Any, step: Any) -> None:
         made = _made_of(
             "ChainLangevinIntegrator",
-            temperature=_number(temperature, unit.kelvin),
-            friction=_number(friction, unit.picosecond**-1),
-            stepSize=_number(step, unit.picosecond),
+            temperature=_number(temperature, unit.kelvin, "temperature (K)"),
+            friction=_number(friction, unit.picosecond**-1, "friction (1/ps)"),
+            stepSize=_number(step, unit.picosecond, "step (ps)"),
             randomSeed=0,
         )
         self.this = made.this
@@ -69,7 +74,7 @@ class ChainVerletIntegrator(openmm.VerletIntegrator):
     """OpenMM's VerletIntegrator, with constraints solved as by ChainLangevinIntegrator. The step is in ps."""
 
     def __init__(self, step: Any) -> None:
-        self.this = _made_of("ChainVerletIntegrator", stepSize=_number(step, unit.picosecond)).this
+        self.this = _made_of("ChainVerletIntegrator", stepSize=_number(step, unit.picosecond, "step (ps)")).this
 
 
 @contextlib.contextmanager

@@ -97,7 +97,7 @@ def density(source: Any, *, axes: Any = None) -> Any:
         _curve(curve, axes, colour=_COLOURS[number], label=curve.kind if len(curves) > 1 else None)
     if len(curves) > 1:
         axes.legend(frameon=False, fontsize="small")
-    axes.set_xlabel(f"z [{curves[0].variable_unit}]")
+    axes.set_xlabel(f"distance from the middle [{curves[0].variable_unit}]")
     axes.set_ylabel(f"density [{curves[0].unit}]")
     return axes
 

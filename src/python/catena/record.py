@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from catena import _core
+from catena.errors import InputError
 
 if TYPE_CHECKING:
     from catena.simulation import Simulation
@@ -21,6 +22,8 @@ class Record:
     """
 
     def __init__(self, simulation: Simulation, every: int = 1) -> None:
+        if not hasattr(simulation, "_scene") or not hasattr(simulation, "observe"):
+            raise InputError(f"the type {type(simulation).__name__} is no simulation (Record): give a catena.Simulation")
         self._simulation = simulation
         self._sites = _core.Sites.of_model(simulation._scene)
         #: Chains, masses and residues of the sites.
@@ -42,7 +45,7 @@ class Record:
     @property
     def positions(self) -> np.ndarray:
         """Positions of the sites in ground axes, unwrapped (n_frames, n_sites, 3), nm (m in SI)."""
-        return np.array(self._frames).reshape(len(self), -1, 3)
+        return np.array(self._frames, dtype=float).reshape(len(self), len(self.masses), 3)
 
     @property
     def masses(self) -> np.ndarray:
@@ -84,6 +87,6 @@ class Record:
 
     def _take(self, simulation: Simulation) -> None:
         state = simulation.state
-        self._frames.append(self._sites.positions(state.positions, state.orientations))
+        self._frames.append(np.asarray(self._sites.positions(state.positions, state.orientations)))
         temperature = np.nan if state.temperature is None else state.temperature
         self._rows.append((state.steps, state.time, state.kinetic_energy, state.potential_energy, temperature))

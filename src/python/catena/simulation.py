@@ -274,7 +274,10 @@ class Simulation:
         if isinstance(checkpoint, (str, os.PathLike)):
             raise InputError("the checkpoint is not bytes (Simulation.restore): read files with load(path)")
         self._kept = None
-        self._live.restore(checkpoint if isinstance(checkpoint, bytes) else bytes(memoryview(checkpoint)))
+        try:
+            self._live.restore(checkpoint if isinstance(checkpoint, bytes) else bytes(memoryview(checkpoint)))
+        except InputError as error:
+            raise InputError(_in_python(str(error))) from None
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes ``checkpoint()`` to a file, which is replaced as a whole."""
@@ -309,6 +312,13 @@ class Simulation:
         for observer, every in list(self._observers):
             if self.steps % every == 0:
                 observer(self)
+
+
+def _in_python(message: str) -> str:
+    """Returns a message on a checkpoint in the words of the package."""
+    begin, branch, _ = message.partition(", or branch off with --branch")
+    begin = begin.replace("restart with its own scene", "restore it with its own scene") if branch else begin
+    return begin.replace("Simulation::", "Simulation.")
 
 
 def _count(value: Any, what: str, where: str, least: int) -> int:

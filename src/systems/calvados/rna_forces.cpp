@@ -32,8 +32,9 @@ void set(std::int64_t& link, std::int64_t to, std::int64_t bead, BeadSystem cons
                         "has one",
                         beads.name(bead) + 1, beads.name(link) + 1, beads.name(to) + 1),
             beads.scene_file,
-            fmt::format("hang one base on each bead {}, and let one follow it",
-                        calvados_rna::backbone));
+            fmt::format(
+                "hang one base on each bead {}, let one follow it, and leave out cross-links",
+                calvados_rna::backbone));
     link = to;
 }
 
