@@ -33,6 +33,7 @@
 #include "reader/validation.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
+#include "scene/integrator.hpp"
 #include "scene/node.hpp"
 #include "terms/hash.hpp"
 
@@ -42,6 +43,16 @@ namespace {
 
 using scene::Fields;
 using scene::Node;
+
+/// Notes friction that the integrator ignores.
+void note_friction(Node const& dynamics, Scene& scene) {
+    DynamicsSpec const& d = scene.dynamics;
+    if (is_langevin(d.integrator) || !dynamics.find("friction") || d.friction == 0) return;
+    scene.note(fmt::format(
+        "dynamics.friction = {:g} has no effect: integrator {} has no thermostat, {} has one",
+        d.friction, name_of(d.integrator),
+        uses_joint_coordinates(d.integrator) ? "baoab" : "g-baoab"));
+}
 
 /// Reads all sections except the chains.
 Scene read_frame(Fields const& fields, std::string const& name) {
@@ -58,7 +69,10 @@ Scene read_frame(Fields const& fields, std::string const& name) {
     if (Node const* const units = fields.find("units"))
         made.si = scene::choice<bool>(*units, {{"md", false}, {"si", true}});
     Node const* const dynamics = fields.find("dynamics");
-    if (dynamics) made.dynamics = scene::read_dynamics(*dynamics, made.si);
+    if (dynamics) {
+        made.dynamics = scene::read_dynamics(*dynamics, made.si);
+        note_friction(*dynamics, made);
+    }
     if (Node const* const box = fields.find("box")) made.box = scene::read_box(*box);
     if (Node const* const relax = fields.find("relax")) made.relax = scene::truth(*relax);
     if (Node const* const forces = fields.find("forces"))

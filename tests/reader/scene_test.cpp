@@ -137,6 +137,35 @@ TEST(Scenes, numbers_are_read_to_the_last_bit) {
     EXPECT_EQ(gravity("1.7976931348623157e308"), 1.7976931348623157e308);
 }
 
+TEST(Scenes, friction_that_no_thermostat_uses_is_noted) {
+    auto const notes = [](std::string const& integrator, std::string const& friction) {
+        std::string const chain = integrator != "rattle" && integrator != "g-baoab"
+                                      ? "{pendulum: {links: 3}}"
+                                      : "{freely_jointed: {beads: 3, length: 1}}";
+        std::string told;
+        for (std::string const& note : parse_scene("chains: [{generator: " + chain +
+                                                       "}]\ndynamics: {integrator: " + integrator +
+                                                       ", step: 1e-3" + friction + "}",
+                                                   "s.yaml")
+                                           .notes)
+            if (note.starts_with("dynamics.friction")) told += note;
+        return told;
+    };
+    EXPECT_EQ(notes("rattle", ", friction: 0.2"),
+              "dynamics.friction = 0.2 has no effect: integrator rattle has no thermostat, g-baoab "
+              "has one");
+    EXPECT_EQ(
+        notes("leapfrog", ", friction: 1"),
+        "dynamics.friction = 1 has no effect: integrator leapfrog has no thermostat, baoab has "
+        "one");
+    for (char const* const integrator : {"rattle", "rk4", "velocity-verlet"}) {
+        EXPECT_EQ(notes(integrator, ""), "");
+        EXPECT_EQ(notes(integrator, ", friction: 0"), "");
+    }
+    EXPECT_EQ(notes("g-baoab", ", friction: 0.2"), "");
+    EXPECT_EQ(notes("baoab", ", friction: 0.2"), "");
+}
+
 TEST(Hash, tells_what_decides_the_motion) {
     auto const hash = [](std::vector<std::string> const& overrides) {
         return parse_scene(sketch, "s.yaml", overrides).hash;
