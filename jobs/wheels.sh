@@ -14,8 +14,8 @@ Does, without asking anything, as root or with sudo:
      the `openmm` beside it;
   4. installs each wheel into fresh virtual environments, of every CPython it serves and is found, on a PATH without compilers
      (tests/python_package/wheel_trial.py): without openmm, with the openmm of the build, and with an older one.
-Wheels go to build/wheels. A wheel runs on Linux with the glibc of the machine that builds it or a newer one: Debian 12 serves
-Ubuntu 24.04, not RHEL 9. Logs: build/logs/wheel-*.log.
+Wheels go to build/wheels. A wheel runs on Linux with the glibc of the machine that builds it or a newer one: those of Debian 12
+run on Ubuntu 22.04 and 24.04, not on RHEL 9. Logs: build/logs/wheel-*.log.
 TEXT
 }
 
