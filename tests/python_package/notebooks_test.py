@@ -16,7 +16,7 @@ from package import INPUTS, Case
 FOLDER = os.path.join(INPUTS, "notebooks")
 os.environ["MPLBACKEND"] = "Agg"
 try:
-    import matplotlib
+    import matplotlib.pyplot
     import tqdm
 
     DRAWS = bool(matplotlib and tqdm)
@@ -67,9 +67,21 @@ class Notebooks(Case):
         self.assertLess(names["drift"], 1e-6)
         self.assertEqual(len(re.findall("links: ", said)), 3)
 
+    def test_the_script_of_openmm_keeps_its_temperature(self):
+        try:
+            import catena.openmm  # noqa: F401
+        except ImportError as missing:
+            self.skipTest(str(missing))
+        _, names = self.run_notebook("openmm-script")
+        # 2,001 degrees of freedom: a standard deviation of 9.5 K of one value; values of a run are correlated.
+        for _, temperature, error in (names["before"], names["after"]):
+            self.assertLess(abs(temperature - 300), 4 * 9.5)
+            self.assertLess(error, 2e-5)
+        self.assertLess(names["after"][2], 1e-11)
+
     def test_they_are_plain_notebooks_without_outputs(self):
         names = sorted(os.path.basename(path)[:-6] for path in glob.glob(os.path.join(FOLDER, "*.ipynb")))
-        self.assertEqual(len(names), 3)
+        self.assertEqual(len(names), 4)
         with open(os.path.join(INPUTS, "README.md"), encoding="utf-8") as file:
             page = file.read()
         for name in names:
