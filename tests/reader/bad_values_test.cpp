@@ -120,7 +120,8 @@ forces: {openmm: {bilder: calvados2}})y",
      "`GGG` is not a map (s.yaml: chains[0], line 1): give a map with keys among `name`, `count`, "
      "`concentration`, `place`, `sequence`, `fasta`, `record`, `pdb`, `chain`, `conformer`, "
      "`gaps`, `sites`, "
-     "`bodies`, `generator`, `model`, `positions`, `links`, `base`, `tip`, `anchor`, "
+     "`bodies`, `generator`, `model`, `positions`, `links`, `base`, `tip`, "
+     "`crosslinks`, `anchor`, "
      "`conformation`, `rigid`, `charge_termini`, "
      "`velocities`"},
     {"nothing_in_chain", "chains: [{name: a}]",
