@@ -40,8 +40,8 @@ bool is_device_platform(std::string const& name);
 /// Returns the constraints of a Context, or null if it has none to solve. Its platform must be a
 /// device platform. `unknown`: OpenMM was not told of the constraints when the Context was created.
 /// What else applies them in the Context then gets a solver on the host. `user` names the
-/// integrator for messages. Throws InputError for constraints that form rings, trees or nets, and where
-/// constraint_chains() does.
+/// integrator for messages. Throws InputError for constraints that form rings, trees or nets, and
+/// where constraint_chains() does.
 std::unique_ptr<DeviceConstraints> make_device_constraints(OpenMM::ContextImpl& context,
                                                            bool unknown, std::string const& user);
 

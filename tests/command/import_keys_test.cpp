@@ -463,9 +463,11 @@ TEST_F(PackageWithRna, IsComparedAndRunsAsItIs) {
     expect_good(e);
     for (char const* const doubt : {"not checked", "as it is", "Not compared", "not compared"})
         EXPECT_EQ(e.out.find(doubt), std::string::npos) << e.out;
-    EXPECT_NE(e.out.find("2 chains are branched, the first is B (particle 16 hangs on particle 14, "
-                         "from 0): one rank computes a whole branched chain, however many ranks there are."),
-              std::string::npos)
+    EXPECT_NE(
+        e.out.find(
+            "2 chains are branched, the first is B (particle 16 hangs on particle 14, "
+            "from 0): one rank computes a whole branched chain, however many ranks there are."),
+        std::string::npos)
         << e.out;
     Ended const run = catena({"run", "s.yaml", "--output", "o", "--steps", "20"}, here.path());
     EXPECT_EQ(run.status, 0) << run.err;

@@ -201,8 +201,7 @@ TEST(SimdOfSteps, FindTheSame) {
                                          (springs ? ", springs" : ", many turns");
                 auto const found = after_steps(level, *alone),
                            shared = after_steps(level, testing::world());
-                auto const same_state = [](SceneMotion const& a,
-                                           SceneMotion const& b) {
+                auto const same_state = [](SceneMotion const& a, SceneMotion const& b) {
                     return same_bits(a.position, b.position) && same_bits(a.velocity, b.velocity) &&
                            same_bits(a.orientation, b.orientation);
                 };
