@@ -28,8 +28,9 @@ class SemidefiniteSystem {
     /// D^-1/2.
     Eigen::VectorXd scale_;
     Eigen::Index rank_ = 0;
-    /// Factor of the scaled matrix, unless it may be singular; then its pseudo-inverse.
-    Eigen::LDLT<Eigen::MatrixXd> factor_;
+    /// Factor of the scaled matrix, of 1 at first, unless it may be singular; then its
+    /// pseudo-inverse.
+    Eigen::LDLT<Eigen::MatrixXd> factor_{Eigen::MatrixXd::Identity(1, 1)};
     Eigen::MatrixXd pseudo_inverse_;
     double log_determinant_ = 0;
 };
