@@ -155,7 +155,8 @@ def main():
         show(rows[-1])
     if options.json:
         with open(options.json, "w", encoding="utf-8") as file:
-            json.dump({"openmm": openmm.__version__, "options": vars(options), "rows": rows}, file, indent=1)
+            shown = {name: value for name, value in vars(options).items() if name != "json"}
+            json.dump({"openmm": openmm.__version__, "options": shown, "rows": rows}, file, indent=1)
 
 
 if __name__ == "__main__":
