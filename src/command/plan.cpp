@@ -110,7 +110,7 @@ CrossLinkCounts crosslinks_of(ChainGroup const& group, Scene const& scene) {
     return counts;
 }
 
-/// What the chains of a group are called, with a blank: "branched ", "cross-linked " or nothing.
+/// Kind of a group's chains for messages, with a blank: "branched ", "cross-linked " or nothing.
 std::string chain_word(ChainGroup const& group, CrossLinkCounts const& crosslinks) {
     if (crosslinks.all > 0) return "cross-linked ";
     return group.is_branched() ? "branched " : "";

@@ -8,7 +8,7 @@
 
 namespace catena::dca {
 
-/// What the side paths of each fork make of its bead, in the memory of a Space.
+/// Beads with side paths as their own paths see them, in the memory of a Space.
 struct ForkBeads {
     /// Inverse of the bead's mass and of what its side links hold, E; W.
     Sym3* inverse_mass = nullptr;

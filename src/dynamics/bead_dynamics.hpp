@@ -476,7 +476,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     Field<1> halves_;
     std::vector<LocalPiece> piece_;
     std::vector<HeldTip> tip_;
-    /// As BeadPlaces and BranchedPlaces.
+    /// Lists of BeadPlaces and BranchedPlaces.
     struct Lists {
         List<std::uint8_t> is_first, has_link;
         List<std::int64_t> inboard;

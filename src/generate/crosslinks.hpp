@@ -22,7 +22,7 @@ bool project_links(ChainSpec const&, std::vector<Vec3>& positions);
 inline constexpr char const *closing_note = "to close cross-links",
                             *special_note = "give positions that are not so special";
 
-/// What fit_crosslinks() may do, and with whom it speaks.
+/// Permissions of fit_crosslinks(), and the scene that takes its notes.
 struct CrossLinkFit {
     Scene& scene;
     /// The value in the scene, for messages.

@@ -162,7 +162,7 @@ class Relaxation {
 
     Crowd& crowd_;
     Images images_;
-    /// As Crowd::parent, but counted from the first bead of each chain.
+    /// Crowd::parent, counted from the first bead of each chain.
     std::vector<std::int64_t> parent_;
     Pairs pairs_;
     LinkProjection links_;

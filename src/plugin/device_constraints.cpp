@@ -25,7 +25,7 @@ constexpr int first_sweeps = 8, most_sweeps = 40;
 /// Steps between two looks at the errors.
 constexpr int most_unseen_steps = 16;
 
-/// What the platforms' data begin with: CudaPlatform, HipPlatform and OpenCLPlatform have a vector
+/// First members of the platforms' data: CudaPlatform, HipPlatform and OpenCLPlatform have a vector
 /// of pointers to their own kind of ComputeContext.
 struct PlatformData {
     OpenMM::ContextImpl* context;

@@ -15,7 +15,7 @@
 namespace catena::plugin {
 namespace {
 
-/// What all integrators keep in XML.
+/// Properties that all integrators keep in XML.
 void write(OpenMM::Integrator const& integrator, OpenMM::SerializationNode& node) {
     node.setIntProperty("version", 1);
     node.setDoubleProperty("stepSize", integrator.getStepSize());

@@ -37,7 +37,7 @@ class ChainIntegrator : public Base, public HeldConstraints {
     /// True for Langevin dynamics, which projects velocities and has velocities at whole steps.
     static constexpr bool takes_noise = std::is_same_v<Base, OpenMM::LangevinMiddleIntegrator>;
     void step_on_device();
-    /// On a GPU: OpenMM's kernel, and the constraints before and after it.
+    /// Step on a GPU: OpenMM's kernel, and the constraints before and after it.
     OpenMM::Kernel kernel_;
     std::unique_ptr<DeviceConstraints> device_;
     /// True while OpenMM's kernel takes a step on a GPU: its own constraints then do nothing.

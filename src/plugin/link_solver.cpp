@@ -22,7 +22,7 @@ constexpr double enough = 1e-12;
 constexpr double unchanged = 1e-3;
 /// Largest number of sweeps, as many as OpenMM's CCMA permits itself.
 constexpr int most_sweeps = 150;
-/// What to do about a step that fails.
+/// Advice for a step that fails.
 constexpr char const* what_to_do =
     "call applyConstraints of the Context if its positions are new, minimise the energy, or take a "
     "smaller step";

@@ -20,8 +20,8 @@ class LinkSolver {
     /// 1e-12 or at rounding, and at most at `tolerance`. Throws ComputationError otherwise, and if
     /// positions are not finite; `to` is then unchanged.
     virtual void close(std::span<Vec3 const> from, std::span<Vec3> to, double tolerance) = 0;
-    /// As close(), with directions at the positions themselves, which may be far from the
-    /// constraints.
+    /// Does what close() does, with directions at the positions themselves, which may be far from
+    /// the constraints.
     virtual void restore(std::span<Vec3> positions, double tolerance) = 0;
     /// Removes velocities along the constraints at `positions`: the equations of RATTLE. Throws
     /// ComputationError if the results are not finite.

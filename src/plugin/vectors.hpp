@@ -14,7 +14,7 @@ namespace catena::plugin {
 
 static_assert(sizeof(OpenMM::Vec3) == sizeof(Vec3));
 
-/// The same numbers as Catena's vectors.
+/// Returns the numbers as Catena's vectors.
 inline std::span<Vec3> as_span(std::vector<OpenMM::Vec3>& vectors) {
     return {reinterpret_cast<Vec3*>(vectors.data()), vectors.size()};
 }

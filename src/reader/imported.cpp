@@ -24,7 +24,7 @@ namespace catena::scene {
 namespace {
 
 double constexpr same_mass = 1e-3;  // relative; covers masses of few digits
-/// What ends of chains add to a residue, and the differences between ends, amu.
+/// Masses that ends of chains add to a residue, and the differences between ends, amu.
 std::array<double, 4> constexpr masses_of_ends{2, 14, 16, 18};
 double constexpr same_end = 1e-3;  // amu
 

@@ -15,7 +15,7 @@ bool has_branches(Scene const&);
 bool goes_by_paths(ChainSpec const&);
 /// True if some chain of the scene is solved path by path.
 bool has_paths(Scene const&);
-/// What the chain is to a reader of messages: branched or cross-linked. Precondition:
+/// Kind of the chain in messages: branched or cross-linked. Precondition:
 /// goes_by_paths().
 char const* kind_of_paths(ChainSpec const&);
 /// Throws InputError if a chain is branched or cross-linked and has a kind of body or tip, or the

@@ -22,7 +22,7 @@ namespace {
 constexpr double digits_of_cell = 2e-3;  // nm, of a PDB file's cell
 constexpr double same_edge = 1e-6;       // nm; covers edges written in decimals
 
-/// What decides whether bonds become links.
+/// Rules for bonds that become links.
 struct LinkRules {
     double temperature;  // K
     std::string const& where;

@@ -72,12 +72,12 @@ struct ForceTerm {
     static constexpr bool on_links = true;
     /// True if it exerts a constant wrench on bodies (constant_wrench()).
     static constexpr bool has_constant_wrench = false;
-    /// What it acts on, in messages.
+    /// Object of its action, in messages.
     static constexpr char const* on_one = "body";
     static constexpr char const* on_many = "bodies";
     /// Name in messages that refuse it.
     static constexpr char const* in_messages = "";
-    /// How a user removes it, in messages that refuse it.
+    /// Advice to remove it, in messages that refuse it.
     static constexpr char const* remedy = "leave it out";
     /// Name in `check`; null if `check` has a line of its own for it.
     static constexpr char const* in_check = nullptr;
@@ -86,9 +86,9 @@ struct ForceTerm {
     static constexpr char const* scene_key = nullptr;
     /// True if the programs of `bench peers` have it, and those of `bench sampling`.
     static constexpr bool known_to_peers = false, known_to_openmm = false;
-    /// What inverse dynamics lacks; null if the oracles know the term.
+    /// Lack of inverse dynamics in words; null if the oracles know the term.
     static constexpr char const* unknown_to_oracles = nullptr;
-    /// What forward dynamics saves without it, for `plan`; null if that is not measured.
+    /// Savings of forward dynamics without it, for `plan`; null if that is not measured.
     static constexpr char const* saving = nullptr;
     static constexpr PrintPlace print_place = PrintPlace::none;
     static constexpr Section section = Section::none;
@@ -126,7 +126,7 @@ struct ForceTerm {
     /// Puts the term on all bodies of the first chain, to measure it.
     static void put(Scene&, std::size_t /*bodies*/) {}
 
-    /// What bodies of a group have: arrays on the host, in a Space, or views of them.
+    /// Properties of a group's bodies: arrays on the host, in a Space, or views of them.
     template <template <int> class F>
     struct Arrays {};
     /// Converts arrays: convert() makes a field of another one.

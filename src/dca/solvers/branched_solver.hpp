@@ -270,8 +270,8 @@ class BranchedSolver final : public ChainSolver {
     /// Bodies of a phase whose loops threads share.
     static constexpr std::int64_t worth_threads = 4096;
 
-    /// What the leaf reads of each place: the fork (-1: none), whether a path ends there, and the
-    /// restricted directions of the inboard joint.
+    /// Properties of each place that the leaf reads: the fork (-1: none), whether a path ends
+    /// there, and the restricted directions of the inboard joint.
     struct Places {
         explicit Places(ChainGroup const& group)
             : fork(at(group.size), -1),

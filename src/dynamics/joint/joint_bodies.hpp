@@ -13,7 +13,7 @@
 
 namespace catena {
 
-/// What a group's bodies are made of. Everything in it must outlive them.
+/// Constant properties of a group's bodies. Everything in it must outlive them.
 struct JointGroup {
     ChainGroup const& group;
     Scene const& scene;

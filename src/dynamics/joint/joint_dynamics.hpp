@@ -37,12 +37,12 @@ struct JointClock {
     double now = 0, start = 0;
 };
 
-/// What JointDynamics::update() computes.
+/// Extent of JointDynamics::update().
 enum class JointUpdate : std::uint8_t {
     /// The motion, the loads that depend on the state alone and the positions of carried beads.
     /// Clears the forces on these beads.
     configuration,
-    /// The same before a solution `at_once`, without what the solver can compute itself.
+    /// Everything before a solution `at_once`, without what the solver can compute itself.
     to_solve_once,
     /// Motion and loads at the same coordinates with the current velocities. Matrices and the
     /// forces on carried beads stay.
@@ -72,7 +72,7 @@ enum class JointQuantity : std::uint8_t {
 struct JointMeasure {
     JointQuantity what;
     double length = 0;  // Of `divergence`: the step's length.
-    /// Of `error`.
+    /// Parameters of `error`.
     EmbeddedDifference difference = {};
     AllowedErrors allowed = {};
 };

@@ -7,7 +7,7 @@
 
 namespace catena {
 
-/// What is left of the loads of the last updated configuration.
+/// Pending part of the loads of the last updated configuration.
 enum class LoadsLeft : std::uint8_t {
     nothing,
     beads,    // Loads of all bodies; they wait for the forces on carried beads.

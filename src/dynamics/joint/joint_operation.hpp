@@ -8,7 +8,7 @@
 
 namespace catena {
 
-/// What an operator does to the state of all bodies.
+/// Effect of an operator on the state of all bodies.
 enum class JointOperator : std::uint8_t {
     /// Computes accelerations at the current state; matrices are assembled.
     evaluate,
@@ -69,14 +69,14 @@ struct JointOperation {
     JointOperator what = JointOperator::evaluate;
     /// Duration: step / divisor. Of `accumulate`: the weight of the rates in the sum.
     double divisor = 1;
-    /// Of `accumulate`: the next stage's state is the start's plus step / next times the rates.
+    /// For `accumulate`: the next stage's state is the start's plus step / next times the rates.
     double next = 1;
-    /// Of `accumulate`: the first stage sets the sum, the last one makes it the state.
+    /// For `accumulate`: the first stage sets the sum, the last one makes it the state.
     bool first = false, last = false;
-    /// Of `noise`: the thermostat, and the step that keys the noise.
+    /// For `noise`: the thermostat, and the step that keys the noise.
     Thermostat thermostat = {};
     std::uint64_t number = 0;
-    /// Of `embedded_stage`.
+    /// Parameters of `embedded_stage`.
     EmbeddedStage stage = {};
 };
 

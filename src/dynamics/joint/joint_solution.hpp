@@ -29,7 +29,7 @@ struct JointSolution {
     ConstView<3> bead_force;
     ConstDirectionsView bias, joint_force, tip_bias, tip_force;
     ConstView<6> compliance;  // Compliance of implicit joints (ConfigurationView::compliance).
-    /// What the last refinement has added to `alpha` and `acceleration`; no origin without one.
+    /// Addition of the last refinement to `alpha` and `acceleration`; no origin without one.
     ConstView<3> change_of_alpha{}, change_of_acceleration{};
 
     /// Accelerations and joint forces for output, W. Collective.

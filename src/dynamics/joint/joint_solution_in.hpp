@@ -8,7 +8,7 @@
 
 namespace catena {
 
-/// What the last solution includes.
+/// Content of the last solution.
 enum class Found : std::uint8_t {
     accelerations,  // Accelerations of bodies.
     revolutes,  // AccelerationsView::revolute_acceleration, and bodies where that is not enough.

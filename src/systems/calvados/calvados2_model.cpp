@@ -154,7 +154,7 @@ std::string bond_text(OpenMmSpec const& spec, ForceResidues const& residues,
                          : fmt::format("{:.6g} to {:.6g} nm", least, most);
 }
 
-/// How far charges are screened, e.g. "Debye length 0.79 nm".
+/// Range of screened charges in words, e.g. "Debye length 0.79 nm".
 std::string screening_text(calvados2::Yukawa const& y) {
     return y.kappa > 0 ? fmt::format("Debye length {:.4g} nm", 1 / y.kappa)
                        : "nothing screens charges";
@@ -167,7 +167,7 @@ std::size_t closing_links(BeadSystem const& beads) {
     return beads.rigid.empty() && beads.links.size() > open ? beads.links.size() - open : 0;
 }
 
-/// What becomes of the model's bonds.
+/// Treatment of the model's bonds in words.
 std::string links_text(OpenMmSpec const& spec, ForceResidues const& residues,
                        BeadSystem const& beads, bool has_rna) {
     std::size_t const closing = closing_links(beads), links = beads.links.size() - closing;
