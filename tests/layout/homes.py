@@ -43,8 +43,6 @@ LARGER = {
     "DeviceTree": (292, 11),
     "FrameStart": (273, 9),
     "FusedSweep": (467, 3),
-    "GhostPath": (366, 21),
-    "GpuPath": (124, 21),
     "H5mdWriter": (305, 11),
     "Hdf5Bodies": (284, 4),
     "HostSpace": (254, 1),
