@@ -49,7 +49,6 @@ LARGER = {
     "JointKinematics": (209, 28),
     "JointLoads": (366, 21),
     "MpiCommunicator": (267, 11),
-    "OnDevice": (189, 22),
     "OpenMmForces": (60, 21),
     "Planner": (267, 6),
     "RevoluteRunsSideBySide": (429, 0),
