@@ -40,7 +40,6 @@ LARGER = {
     "ChainGroup": (146, 50),
     "ChainReader": (267, 8),
     "DeviceSpace": (347, 5),
-    "DeviceTree": (292, 11),
     "FrameStart": (273, 9),
     "FusedSweep": (467, 3),
     "H5mdWriter": (305, 11),
