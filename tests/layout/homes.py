@@ -39,7 +39,6 @@ LARGER = {
     "CalvadosComponent": (29, 22),
     "ChainGroup": (146, 50),
     "ChainReader": (267, 8),
-    "DeviceSpace": (347, 5),
     "FrameStart": (273, 9),
     "FusedSweep": (467, 3),
     "H5mdWriter": (305, 11),
