@@ -214,7 +214,7 @@ struct TreeLaunches {
         int const of_block = kernels::threads_for<Sweep>(planned_threads, most_threads);
         return {stage.view.blocks, static_cast<unsigned>(of_block),
                 sizeof(double) * static_cast<std::size_t>(
-                                     kernels::BlockOfStage<Sweep>::size(stage.view, of_block))};
+                                     kernels::PlacesOfBlock<Sweep>::size(stage.view, of_block))};
     }
     /// Launches both passes of the last stages. `top`: null if there is no stage above.
     template <class Sweep, class Exchange>

@@ -34,7 +34,6 @@ LINES, MEMBERS = 250, 20
 # Larger classes: their lines and members may fall only. A class that is no longer larger leaves the list.
 LARGER = {
     "BeadDynamics": (454, 38),
-    "BlockOfStage": (316, 9),
     "BodyArrays": (49, 21),
     "CalvadosComponent": (29, 22),
     "ChainGroup": (146, 50),
@@ -50,12 +49,10 @@ LARGER = {
     "OpenMmForces": (60, 21),
     "Planner": (267, 6),
     "RevoluteRunsSideBySide": (429, 0),
-    "RevoluteTeam": (297, 10),
     "RigidChains": (267, 41),
     "RigidDynamics": (513, 60),
     "Run": (274, 19),
     "SamplingRow": (40, 25),
-    "ShortTeams": (347, 11),
     "SpaceLevels": (216, 25),
     "TableCheck": (294, 11),
     "TreeSolver": (363, 27),
