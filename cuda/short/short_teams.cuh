@@ -266,10 +266,10 @@ class ShortTeams {
         Ends const own = in_.ends.load(is_.lane);
         Kept const kept{in_.records, in_.gains, is_.lane};
         if (int const count = is_.bodies_of(is_.lane); count > 0)
-            sweep_.forces_by_gains(count, kept, own.first, own.next,
-                                   [&](int i, State const& inboard, State const& outboard) {
-                                       kept.put(i, Ends{inboard, outboard});
-                                   });
+            dca::forces_by_gains<Sweep>(count, kept, own.first, own.next,
+                                        [&](int i, State const& inboard, State const& outboard) {
+                                            kept.put(i, Ends{inboard, outboard});
+                                        });
     }
     OneChain const& chain_;
     Sweep const& sweep_;
