@@ -5,6 +5,7 @@
 #include "cuda/sweeps/branchless_math.cuh"
 #include "cuda/sweeps/prefetch.cuh"
 #include "cuda/sweeps/runs_view.hpp"
+#include "dca/part_descent.hpp"
 
 namespace catena::cuda::kernels {
 
