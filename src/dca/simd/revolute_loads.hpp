@@ -117,10 +117,10 @@ class FollowedInLanes {
     using Kept = KeptRevolutes<Real, Leaf>;
 
   public:
-    /// read(i) reads body i into the tile. `by_all`: results of every body are wanted.
-    FollowedInLanes(Loads const& loads, RunsInLanes const& runs, Kept const& kept, bool by_all,
-                    Read const& read)
-        : loads_(loads), runs_(runs), kept_(kept), by_all_(by_all), read_(read) {}
+    /// read(i) reads body i into the tile. `out`: the results that are wanted.
+    FollowedInLanes(Loads const& loads, RunsInLanes const& runs, Kept const& kept,
+                    AccelerationsView const& out, Read const& read)
+        : loads_(loads), runs_(runs), kept_(kept), out_(out), read_(read) {}
     /// Reads the first bodies and starts the recursion of the velocities.
     ArticulatedBody<Real> first() {
         read_(0);
@@ -142,12 +142,12 @@ class FollowedInLanes {
         rotation_ = to_matrix_of_unit(state.rotation);
         LoadedBodyInRun<Real> body = state.go_on(follow(on_revolute, rotation_, state.omega));
         loads_.add_wrench(here, from_ground_, body.torque, body.force);
-        if (i >= count - 2 || by_all_) keep_omega(i);
+        if (i >= count - 2 || out_.by_all_bodies()) keep_omega(i);
         return body;
     }
     /// Returns the last body in its own axes, with its velocity terms and all loads.
     ArticulatedBody<Real> last(int i) {
-        read_(i);
+        read_(count - 1);
         Column<Real> const here{i % part_length};
         auto body = leaf().revolute_at_rest(loads_.bodies.loads, here);
         Matrix3 const rotation = axes_ * transpose(body.e1);
@@ -186,7 +186,7 @@ class FollowedInLanes {
     Loads loads_;
     RunsInLanes const& runs_;
     Kept kept_;
-    bool by_all_;
+    AccelerationsView const& out_;
     Read const& read_;
     // Rotation matrix from the current body to the run's axes, axes of the last revolute joint
     // in the run's axes, and rotation matrix from W to the run's axes.

@@ -27,7 +27,7 @@ class RevoluteRunsSideBySide : RunsInTile<Real, Leaf> {
             ask(runs, i, 1);
         };
         if (bodies_.loads.revolutes.given) {
-            climb(item, FollowedInLanes(loads(), runs, kept(item), out_.by_all_bodies(), fetch));
+            climb(item, FollowedInLanes(loads(), runs, kept(item), out_, fetch));
         } else {
             auto const body = [this, &runs, &fetch](int i) {
                 fetch(i);
