@@ -32,9 +32,9 @@ Json json_of(SamplingRow const& row, std::int64_t copies) {
             {"step_ps", row.step},
             {"state", row.state},
             {"why", row.why},
-            {"backend", row.backend},
-            {"platform", row.platform},
-            {"path", row.path},
+            {"backend", row.engine.backend},
+            {"platform", row.engine.platform},
+            {"path", row.engine.path},
             {"samples_per_copy", row.samples},
             {"every_ps", row.every},
             {"ps_per_copy", row.time},
@@ -46,18 +46,18 @@ Json json_of(SamplingRow const& row, std::int64_t copies) {
             {"configurational_temperature", json_of(row.temperature, "K")},
             {"kinetic_temperature", json_of(row.kinetic, "K")},
             {"largest_link_error", row.link_error},
-            {"copies_spacing_nm", row.spacing},
-            {"copies_apart_nm", row.nearest},
-            {"rounding_of_positions_nm", row.rounding},
-            {"steps_timed", row.steps},
-            {"seconds_in_steps", row.stepping},
-            {"seconds_in_samples", row.sampling},
+            {"copies_spacing_nm", row.distances.spacing},
+            {"copies_apart_nm", row.distances.nearest},
+            {"rounding_of_positions_nm", row.distances.rounding},
+            {"steps_timed", row.times.steps},
+            {"seconds_in_steps", row.times.stepping},
+            {"seconds_in_samples", row.times.sampling},
             {"seconds_per_step",
-             {{"mean", row.stepping / static_cast<double>(row.steps)},
-              {"median", row.seconds.median},
-              {"min", row.seconds.min},
-              {"max", row.seconds.max},
-              {"blocks", row.seconds.count}}},
+             {{"mean", row.times.stepping / static_cast<double>(row.times.steps)},
+              {"median", row.times.seconds.median},
+              {"min", row.times.seconds.min},
+              {"max", row.times.seconds.max},
+              {"blocks", row.times.seconds.count}}},
             {"ns_per_day", row.ns_per_day()},
             {"ns_per_day_of_all_copies", row.ns_per_day() * static_cast<double>(copies)},
             {"valid", row.valid()}};
@@ -129,7 +129,7 @@ std::string table_of(std::vector<SamplingRow> const& rows) {
                    text_of(row.gyration, 4), text_of(row.end_to_end, 3), text_of(row.cosine, 5),
                    text_of(row.temperature, 2), text_of(row.kinetic, 2),
                    fmt::format("{:.1e}", row.link_error),
-                   row.steps > 0 ? duration_text(row.seconds.median) : "-",
+                   row.times.steps > 0 ? duration_text(row.times.seconds.median) : "-",
                    rate_text(row.ns_per_day()), row.state});
     }
     return table.text();
@@ -214,8 +214,8 @@ std::string heading(SamplingCopies const& copies, SamplingOptions const& options
 std::string distances_text(std::vector<SamplingRow> const& rows) {
     double nearest = INFINITY, rounding = 0;
     for (SamplingRow const& row : rows) {
-        if (row.valid()) nearest = std::min(nearest, row.nearest);
-        rounding = std::max(rounding, row.rounding);
+        if (row.valid()) nearest = std::min(nearest, row.distances.nearest);
+        rounding = std::max(rounding, row.distances.rounding);
     }
     std::string const far = fmt::format(
         "Single precision, if OpenMM uses it, rounds positions by at most {:.0e} nm.\n", rounding);

@@ -62,9 +62,9 @@ class CatenaMover final : public Mover {
     double link_error() override { return catena_.constraint_error(); }
     double tolerance() const override { return catena_.tolerance(); }
     void describe(SamplingRow& row) override {
-        row.backend = name_of(catena_.system().backend());
-        row.platform = catena_.system().openmm()->platform();
-        row.path = catena_.system().openmm()->path();
+        row.engine.backend = name_of(catena_.system().backend());
+        row.engine.platform = catena_.system().openmm()->platform();
+        row.engine.path = catena_.system().openmm()->path();
     }
 
   private:
@@ -99,8 +99,8 @@ class OpenMmMover final : public Mover {
         return links_ == OwnLinks::bonds ? torn : tolerance_of_constraints;
     }
     void describe(SamplingRow& row) override {
-        row.backend = "OpenMM";
-        row.platform = own_->platform();
+        row.engine.backend = "OpenMM";
+        row.engine.platform = own_->platform();
     }
 
   private:
@@ -178,10 +178,10 @@ class RowRun {
                 row_.link_error = larger(row_.link_error, mover.link_error());
             } else {
                 stepped_.push_back((after - before) / static_cast<double>(of_block_));
-                row_.stepping += after - before;
-                row_.steps += of_block_;
+                row_.times.stepping += after - before;
+                row_.times.steps += of_block_;
                 sample(mover);
-                row_.sampling += seconds_now() - after;
+                row_.times.sampling += seconds_now() - after;
             }
             if (!(row_.link_error <= std::max(torn, mover.tolerance())))
                 throw ComputationError("links are torn");
@@ -201,7 +201,7 @@ class RowRun {
         row_.gyration = blocked_mean(found_.gyration);
         row_.end_to_end = blocked_mean(found_.end_to_end);
         row_.cosine = blocked_mean(found_.cosine);
-        row_.seconds = spread_of(stepped_);
+        row_.times.seconds = spread_of(stepped_);
         if (row_.samples == 0) return;
         row_.temperature = blocked_ratio(found_.virial, found_.divergence);
         row_.temperature.mean /= model.boltzmann();
@@ -220,7 +220,7 @@ class RowRun {
         row_.link_error = larger(row_.link_error, now.link_error);
         double const nearest = copies_.nearest(now.position);
         if (std::isnan(nearest)) throw ComputationError("positions are not finite");
-        row_.nearest = std::min(row_.nearest, nearest);
+        row_.distances.nearest = std::min(row_.distances.nearest, nearest);
         std::vector<ChainSample> const samples =
             copies_.sample(now.position, measure_of(row_.method));
         for (ChainSample const& each : samples)
@@ -249,9 +249,9 @@ void judge(SamplingRow& row, double tolerance) {
         row.why =
             fmt::format("links have errors of {:.1e} of their length, the tolerance is {:.0e}",
                         row.link_error, tolerance);
-    } else if (!(row.nearest > SamplingCopies::cutoff())) {
+    } else if (!(row.distances.nearest > SamplingCopies::cutoff())) {
         row.why = fmt::format("two copies came within {:.3g} nm of each other, forces reach {} nm",
-                              row.nearest, SamplingCopies::cutoff());
+                              row.distances.nearest, SamplingCopies::cutoff());
     } else if (!std::isfinite(row.gyration.mean + row.end_to_end.mean + row.cosine.mean +
                               row.temperature.mean)) {
         row.why = "a mean is not finite";
@@ -292,8 +292,8 @@ SamplingRow run_sampling_row(SamplingCopies& copies, BenchRequest const& request
     row.method = method;
     row.step = step;
     RowRun run(copies, request, row);
-    row.spacing = copies.spacing(run.time());
-    row.rounding = rounding_at(copies.extent(run.time()));
+    row.distances.spacing = copies.spacing(run.time());
+    row.distances.rounding = rounding_at(copies.extent(run.time()));
     std::unique_ptr<Mover> mover;
     try {
         mover = make_mover(copies, communicator, backend, method, step, run.time());

@@ -21,6 +21,31 @@ SamplingMethod sampling_method_named(std::string const& option, std::string cons
 /// Returns the measure of bond directions that the method samples.
 BondMeasure measure_of(SamplingMethod);
 
+/// Distances of the copies of a row, nm.
+struct CopyDistances {
+    /// Smallest distance of two copies at any sample.
+    double nearest = INFINITY;
+    /// Distance of the copies at the start.
+    double spacing = 0;
+    /// Rounding of positions in single precision at the outermost possible bead.
+    double rounding = 0;
+};
+
+/// Wall time of the steps and samples of a row.
+struct SamplingTimes {
+    /// Seconds per step, from the blocks between samples.
+    Spread seconds;
+    /// Seconds spent in steps and in samples.
+    double stepping = 0, sampling = 0;
+    /// Number of these steps.
+    std::int64_t steps = 0;
+};
+
+/// What computes a row: backend of the chains, platform and path of the forces.
+struct SamplingEngine {
+    std::string backend, platform, path;
+};
+
 /// Conditions and results of a row. Means have standard errors by blocking.
 struct SamplingRow {
     SamplingMethod method = SamplingMethod::rigid;
@@ -42,24 +67,15 @@ struct SamplingRow {
     Blocked temperature, kinetic;
     /// Largest relative error of a link.
     double link_error = 0;
-    /// Smallest distance of two copies, nm.
-    double nearest = INFINITY;
-    /// Distance of the copies at the start, nm.
-    double spacing = 0;
-    /// Rounding of positions in single precision at the outermost possible bead, nm.
-    double rounding = 0;
-    /// Seconds per step, from the blocks between samples.
-    Spread seconds;
-    /// Seconds spent in steps and in samples.
-    double stepping = 0, sampling = 0;
-    /// Number of these steps.
-    std::int64_t steps = 0;
-    /// Backend of the chains; platform and path of the forces.
-    std::string backend, platform, path;
+    CopyDistances distances;
+    SamplingTimes times;
+    SamplingEngine engine;
 
     bool valid() const { return state == "VALID"; }
     double ns_per_day() const {
-        return stepping > 0 ? static_cast<double>(steps) * step * 1e-3 * 86400 / stepping : NAN;
+        return times.stepping > 0
+                   ? static_cast<double>(times.steps) * step * 1e-3 * 86400 / times.stepping
+                   : NAN;
     }
 };
 
