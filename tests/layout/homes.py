@@ -37,7 +37,6 @@ LARGER = {
     "BlockOfStage": (316, 9),
     "BodyArrays": (49, 21),
     "ChainGroup": (146, 50),
-    "ChainReader": (267, 8),
     "DeviceSpace": (347, 5),
     "DeviceTree": (292, 11),
     "FrameStart": (273, 9),
