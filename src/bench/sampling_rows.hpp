@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/sampling_copies.hpp"
+#include "bench/sampled_chains.hpp"
 #include "console/outcome.hpp"
 #include "math/blocking.hpp"
 #include "measure/timing.hpp"
@@ -21,15 +21,13 @@ SamplingMethod sampling_method_named(std::string const& option, std::string cons
 /// Returns the measure of bond directions that the method samples.
 BondMeasure measure_of(SamplingMethod);
 
-/// Distances of the copies of a row, nm.
-struct CopyDistances {
-    /// Smallest distance of two copies at any sample.
-    double nearest = INFINITY;
-    /// Distance of the copies at the start.
-    double spacing = 0;
-    /// Rounding of positions in single precision at the outermost possible bead.
-    double rounding = 0;
+/// Mean of a number that describes all chains (SystemValue).
+struct SystemMean {
+    std::string name, unit;
+    Blocked mean;
 };
+/// True if the number is an energy of a term.
+bool is_energy(SystemMean const&);
 
 /// Wall time of the steps and samples of a row.
 struct SamplingTimes {
@@ -65,6 +63,11 @@ struct SamplingRow {
     Blocked gyration, end_to_end, cosine;
     /// Configurational (measure/chain_sample.hpp) and kinetic temperature, K.
     Blocked temperature, kinetic;
+    /// Means of what describes all chains together; none for copies that never meet.
+    std::vector<SystemMean> system;
+    /// Displacement of the chains' centres of mass from the first sample to the last,
+    /// <|dx|^2> / (6 t), nm^2/ns, with the standard error over chains; NaN with one sample.
+    Blocked diffusion;
     /// Largest relative error of a link.
     double link_error = 0;
     CopyDistances distances;
@@ -81,10 +84,10 @@ struct SamplingRow {
 
 /// Runs a row. A failed computation becomes its state. Throws InputError if the row cannot run at
 /// all.
-SamplingRow run_sampling_row(SamplingCopies&, BenchRequest const&, Communicator const&, Backend,
+SamplingRow run_sampling_row(SampledChains&, BenchRequest const&, Communicator const&, Backend,
                              SamplingMethod, double step);
 
-/// Moves the start of the copies by this many ps on rigid links, with the scene's own time step.
-void equilibrate(SamplingCopies&, BenchRequest const&, Communicator const&, Backend, double time);
+/// Moves the start of the chains by this many ps on rigid links, with the scene's own time step.
+void equilibrate(SampledChains&, BenchRequest const&, Communicator const&, Backend, double time);
 
 }  // namespace catena::command
