@@ -11,6 +11,7 @@
 #include "bench/generated.hpp"
 #include "console/text.hpp"
 #include "error.hpp"
+#include "integrate/system_chains.hpp"
 #include "neighbours/grid.hpp"
 #include "reader/load_scene.hpp"
 #include "start/start_relaxation.hpp"
@@ -44,53 +45,61 @@ Scene boxed_scene(BenchRequest const& request, Communicator const& communicator)
 class SortedCells {
   public:
     SortedCells(Grid const& grid, std::vector<Vec3> const& positions)
-        : first_(static_cast<std::size_t>(number_of(
-                     grid, {grid.cells()[0] - 1, grid.cells()[1] - 1, grid.cells()[2] - 1})) +
-                     2,
-                 0),
-          point_(positions.size()) {
-        std::vector<std::int64_t> cell;
-        for (Vec3 const& x : positions) cell.push_back(number_of(grid, grid.cell(x)));
-        for (std::int64_t const c : cell) ++first_[static_cast<std::size_t>(c) + 1];
+        : grid_(grid), point_(positions.size()) {
+        Cell const& count = grid.cells();
+        first_.assign(static_cast<std::size_t>(count[0] * count[1] * count[2]) + 1, 0);
+        std::vector<std::size_t> cell;
+        for (Vec3 const& x : positions) cell.push_back(number_of(grid.cell(x)));
+        for (std::size_t const c : cell) ++first_[c + 1];
         std::partial_sum(first_.begin(), first_.end(), first_.begin());
         std::vector<std::size_t> next = first_;
-        for (std::size_t k = 0; k < cell.size(); ++k)
-            point_[next[static_cast<std::size_t>(cell[k])]++] = k;
+        for (std::size_t k = 0; k < cell.size(); ++k) point_[next[cell[k]]++] = k;
     }
-    /// Returns the numbers of the cells around a position, each once.
-    std::vector<std::int64_t> around(Grid const& grid, Vec3 const& x) const {
-        std::vector<std::int64_t> near;
+    std::int64_t size() const { return std::ssize(first_) - 1; }
+    std::span<std::size_t const> points(std::size_t cell) const {
+        return std::span(point_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+    }
+    /// Returns the cell and those around it, each once.
+    std::vector<std::size_t> around(std::size_t cell) const {
+        auto const c = static_cast<std::int64_t>(cell);
+        std::int64_t const y = grid_.cells()[1], z = grid_.cells()[2];
+        std::vector<std::size_t> near;
         near.reserve(27);
-        grid.around(grid.cell(x), [&](Cell const& c) { near.push_back(number_of(grid, c)); });
+        grid_.around({c / (y * z), c / z % y, c % z},
+                     [&](Cell const& each) { near.push_back(number_of(each)); });
         std::sort(near.begin(), near.end());
         near.erase(std::unique(near.begin(), near.end()), near.end());
         return near;
     }
-    std::span<std::size_t const> points(std::int64_t cell) const {
-        std::size_t const begin = first_[static_cast<std::size_t>(cell)];
-        return std::span(point_).subspan(begin, first_[static_cast<std::size_t>(cell) + 1] - begin);
-    }
 
   private:
-    static std::int64_t number_of(Grid const& grid, Cell const& c) {
-        return (c[0] * grid.cells()[1] + c[1]) * grid.cells()[2] + c[2];
+    std::size_t number_of(Cell const& c) const {
+        return static_cast<std::size_t>((c[0] * grid_.cells()[1] + c[1]) * grid_.cells()[2] + c[2]);
     }
+    Grid const& grid_;
     /// First point of each cell, then their number; point indices cell by cell.
     std::vector<std::size_t> first_, point_;
 };
 
 }  // namespace
 
-std::int64_t pairs_within(std::vector<Vec3> const& positions, double radius, Vec3 const& box) {
+std::int64_t pairs_within(std::vector<Vec3> const& positions, double radius, Vec3 const& box,
+                          Executor const& threads) {
     Grid const grid(radius, box);
     SortedCells const sorted(grid, positions);
-    std::int64_t pairs = 0;
-    for (std::size_t a = 0; a < positions.size(); ++a)
-        for (std::int64_t const cell : sorted.around(grid, positions[a]))
-            for (std::size_t const b : sorted.points(cell))
-                pairs +=
-                    a < b && grid.squared_distance(positions[a], positions[b]) <= radius * radius;
-    return pairs;
+    std::vector<std::int64_t> pairs(static_cast<std::size_t>(sorted.size()), 0);
+    threads.for_ranges(sorted.size(), 1, [&](std::int64_t begin, std::int64_t end) {
+        for (auto cell = static_cast<std::size_t>(begin); cell < static_cast<std::size_t>(end);
+             ++cell) {
+            if (sorted.points(cell).empty()) continue;
+            for (std::size_t const other : sorted.around(cell))
+                for (std::size_t const a : sorted.points(cell))
+                    for (std::size_t const b : sorted.points(other))
+                        pairs[cell] += a < b && grid.squared_distance(positions[a], positions[b]) <=
+                                                    radius * radius;
+        }
+    });
+    return std::accumulate(pairs.begin(), pairs.end(), std::int64_t{0});
 }
 
 std::optional<int> long_axis(Vec3 const& box) {
@@ -121,7 +130,9 @@ double density_seen(std::vector<Vec3> const& positions, std::vector<double> cons
 
 DenseChains::DenseChains(BenchRequest const& request, Communicator const& communicator,
                          Backend backend)
-    : SampledChains(boxed_scene(request, communicator), communicator, backend) {}
+    : SampledChains(boxed_scene(request, communicator), communicator, backend),
+      threads_(openmp_is_built() ? openmp_executor(choose_threads(model(), communicator))
+                                 : serial_executor()) {}
 
 std::string DenseChains::description() const {
     Vec3 const& box = *model().box;
@@ -137,7 +148,7 @@ std::vector<SystemValue> DenseChains::system_values(std::vector<Vec3> const& pos
         values.push_back({term.name + " energy", "kJ/mol per bead", term.value / beads_count});
     Vec3 const& box = *model().box;
     for (double const radius : {steep_side, first_shell}) {
-        std::int64_t pairs = pairs_within(positions, radius, box);
+        std::int64_t pairs = pairs_within(positions, radius, box, *threads_);
         for (BeadSystem::Link const& link : beads().links)
             pairs -= norm(positions[static_cast<std::size_t>(link.outboard)] -
                           positions[static_cast<std::size_t>(link.inboard)]) <= radius;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "bench/sampled_chains.hpp"
+#include "math/executor.hpp"
 
 namespace catena::command {
 
@@ -32,11 +33,14 @@ class DenseChains final : public SampledChains {
     std::vector<Vec3> for_evaluation(std::vector<Vec3> positions) const override {
         return positions;
     }
+
+    std::unique_ptr<Executor> threads_;
 };
 
 /// Returns the number of pairs of points whose nearest images are within `radius`, nm, of each
 /// other. Precondition: no edge of the box is below twice the radius.
-std::int64_t pairs_within(std::vector<Vec3> const& positions, double radius, Vec3 const& box);
+std::int64_t pairs_within(std::vector<Vec3> const& positions, double radius, Vec3 const& box,
+                          Executor const&);
 
 /// Returns the axis of the one long edge of a box, at least twice as long as each other edge.
 std::optional<int> long_axis(Vec3 const& box);

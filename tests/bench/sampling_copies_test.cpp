@@ -67,7 +67,7 @@ TEST(DenseChains, PairsAreCountedAsByComparingAll) {
                     pairs += norm(d) <= radius;
                 }
             EXPECT_GT(pairs, 0);
-            EXPECT_EQ(pairs_within(x, radius, box), pairs) << radius;
+            EXPECT_EQ(pairs_within(x, radius, box, this_thread()), pairs) << radius;
         }
     }
 }
