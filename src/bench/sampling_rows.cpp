@@ -222,6 +222,8 @@ class RowRun {
         row_.time = static_cast<double>(row_.samples * of_block_) * row_.step;
         row_.all = 1e-3 * row_.time * static_cast<double>(chains_.copies());
         row_.gyration = blocked_mean(found_.gyration);
+        for (std::vector<double> const& each : found_.gyration)
+            row_.gyration_of_chains.push_back(blocked_mean({each}).mean);
         row_.end_to_end = blocked_mean(found_.end_to_end);
         row_.cosine = blocked_mean(found_.cosine);
         row_.times.seconds = spread_of(stepped_);

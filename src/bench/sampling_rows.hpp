@@ -61,6 +61,8 @@ struct SamplingRow {
     bool cut = false;
     /// Means: nm, nm, 1.
     Blocked gyration, end_to_end, cosine;
+    /// Mean radius of gyration of each chain, nm.
+    std::vector<double> gyration_of_chains;
     /// Configurational (measure/chain_sample.hpp) and kinetic temperature, K.
     Blocked temperature, kinetic;
     /// Means of what describes all chains together; none for copies that never meet.

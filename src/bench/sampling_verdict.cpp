@@ -10,6 +10,8 @@ namespace {
 
 /// Largest allowed bias in percent.
 constexpr double allowed_percent = 1;
+/// Number of chains from which the scatter of their differences gives an error.
+constexpr std::size_t chains_to_compare = 16;
 
 /// Returns the bias of a mean relative to another, in percent of `scale`.
 QuantityBias bias_of(std::string name, Blocked const& mean, Blocked const& reference,
@@ -17,6 +19,20 @@ QuantityBias bias_of(std::string name, Blocked const& mean, Blocked const& refer
     return {std::move(name), 100 * (mean.mean - reference.mean) / scale,
             100 * std::hypot(mean.error, reference.error) / scale,
             mean.plateau && reference.plateau};
+}
+
+/// Returns the bias of the radius of gyration. All rows start alike, and chains that are slow to
+/// relax remember it: the error is that of the differences chain by chain.
+QuantityBias bias_of_gyration(SamplingRow const& row, SamplingRow const& smallest) {
+    QuantityBias bias = bias_of("Rg", row.gyration, smallest.gyration, smallest.gyration.mean);
+    CopySeries differences;
+    for (std::size_t c = 0;
+         c < std::min(row.gyration_of_chains.size(), smallest.gyration_of_chains.size()); ++c)
+        differences.push_back({row.gyration_of_chains[c] - smallest.gyration_of_chains[c]});
+    if (differences.size() < chains_to_compare) return bias;
+    bias.error = 100 * blocked_mean(differences).error / smallest.gyration.mean;
+    bias.known = true;
+    return bias;
 }
 
 /// Returns the sum of the magnitudes of all energies of a row.
@@ -32,7 +48,7 @@ SamplingBias biases_of(SamplingRow const& row, SamplingRow const& smallest, doub
     SamplingBias bias;
     bias.is_reference = &row == &smallest;
     Blocked const thermostat{.mean = temperature, .error = 0, .block = 1, .plateau = true};
-    bias.of = {bias_of("Rg", row.gyration, smallest.gyration, smallest.gyration.mean),
+    bias.of = {bias_of_gyration(row, smallest),
                bias_of("T conf.", row.temperature, thermostat, temperature)};
     double const energies = energy_scale(smallest);
     for (std::size_t i = 0; i < row.system.size() && i < smallest.system.size(); ++i) {

@@ -47,6 +47,23 @@ TEST(SamplingVerdict, ErrorsDecideWhatIsShown) {
     EXPECT_STREQ(v.bias[2].word(), "errors too large to tell");
 }
 
+/// Chains that all grow alike: the scatter between them is no error of the difference.
+TEST(SamplingVerdict, RadiiAreComparedChainByChain) {
+    std::vector<SamplingRow> rows{row(rigid, 0.01, 3, 300, 0.05),
+                                  row(rigid, 0.02, 3.006, 300, 0.05)};
+    rows[0].temperature.error = rows[1].temperature.error = 0.1;
+    for (int c = 0; c < 20; ++c) {
+        double const own = 2 + 0.1 * c, other = c % 2 ? 0.012 : 0;
+        rows[0].gyration_of_chains.push_back(own);
+        rows[1].gyration_of_chains.push_back(own + other);
+    }
+    SamplingMethodVerdict const v = verdicts_of(rows, 300).front();
+    EXPECT_NEAR(v.bias[1].gyration().percent, 0.2, 1e-9);
+    // 20 differences of 0.006 +- 0.006 nm.
+    EXPECT_NEAR(v.bias[1].gyration().error, 100 * 0.006 / std::sqrt(19) / 3, 1e-9);
+    EXPECT_STREQ(v.bias[1].word(), "shown");
+}
+
 TEST(SamplingVerdict, WithoutAPlateauNothingIsShownOrRefuted) {
     std::vector<SamplingRow> rows{row(rigid, 0.01, 3, 300), row(rigid, 0.02, 3, 300),
                                   row(rigid, 0.03, 3, 350)};
