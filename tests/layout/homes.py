@@ -39,7 +39,6 @@ LARGER = {
     "ChainGroup": (146, 50),
     "DeviceSpace": (347, 5),
     "DeviceTree": (292, 11),
-    "FrameStart": (273, 9),
     "FusedSweep": (467, 3),
     "GhostPath": (366, 21),
     "GpuPath": (124, 21),
