@@ -58,7 +58,6 @@ LARGER = {
     "Run": (274, 19),
     "ShortTeams": (347, 11),
     "SpaceLevels": (216, 25),
-    "TableCheck": (294, 11),
     "TreeSolver": (363, 27),
 }
 HEAD = re.compile(r"\b(?:class|struct)\s+([A-Za-z_]\w*)(?:<[^;{}()]*>)?\s*(?:final\s*)?(?::[^;{}]*)?\{")
