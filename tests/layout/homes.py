@@ -43,7 +43,6 @@ LARGER = {
     "GhostPath": (366, 21),
     "GpuPath": (124, 21),
     "H5mdWriter": (305, 11),
-    "Hdf5Bodies": (284, 4),
     "HostSpace": (254, 1),
     "JointKinematics": (209, 28),
     "JointLoads": (366, 21),
