@@ -42,7 +42,6 @@ LARGER = {
     "FusedSweep": (467, 3),
     "GhostPath": (366, 21),
     "GpuPath": (124, 21),
-    "H5mdWriter": (305, 11),
     "HostSpace": (254, 1),
     "JointKinematics": (209, 28),
     "JointLoads": (366, 21),
