@@ -45,7 +45,6 @@ LARGER = {
     "HostSpace": (254, 1),
     "JointKinematics": (209, 28),
     "JointLoads": (366, 21),
-    "MpiCommunicator": (267, 11),
     "OnDevice": (189, 22),
     "OpenMmForces": (60, 21),
     "Planner": (267, 6),
