@@ -51,7 +51,6 @@ LARGER = {
     "RevoluteTeam": (297, 10),
     "RigidChains": (267, 41),
     "RigidDynamics": (513, 60),
-    "Run": (274, 19),
     "ShortTeams": (347, 11),
     "SpaceLevels": (216, 25),
     "TreeSolver": (363, 27),
