@@ -46,7 +46,6 @@ LARGER = {
     "JointKinematics": (209, 28),
     "JointLoads": (366, 21),
     "OnDevice": (189, 22),
-    "Planner": (267, 6),
     "RevoluteRunsSideBySide": (429, 0),
     "RevoluteTeam": (297, 10),
     "RigidChains": (267, 41),
