@@ -15,7 +15,7 @@ TEST(Segments, RunsAreNeededAlongTheChains) {
     Segments const segments(s.runs, s.levels, s.slots);
     std::vector<std::int64_t> const needed = segments.needed(0, static_cast<int>(s.levels.size()));
     std::vector<std::int64_t> merged;  // a chain of one run has no merge
-    for (Run const& run : s.runs)
+    for (dca::Run const& run : s.runs)
         if (segments.of(run.slot).met >= 0) merged.push_back(run.slot);
     ASSERT_GT(merged.size(), 1U);
     EXPECT_EQ(needed, merged);
@@ -29,7 +29,7 @@ TEST(Segments, RootsContainAllRuns) {
     int const end = static_cast<int>(s.levels.size());
     Segments const segments(s.runs, s.levels, s.slots);
     std::set<std::int64_t> tops;
-    for (Run const& run : s.runs) {
+    for (dca::Run const& run : s.runs) {
         std::int64_t const top = segments.ancestor(run.slot, end);
         EXPECT_TRUE(segments.is_top(top, end));
         EXPECT_EQ(segments.of(run.slot).whole, segments.of(top).joint);
