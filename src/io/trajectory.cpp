@@ -139,9 +139,10 @@ std::vector<std::int64_t> read_steps(TrajectorySeries& series, Place const& plac
 }
 
 /// Reads, in a trial process, all that a continuation reads and a number of each last row.
-void look_through(std::string const& name, TrajectoryContents const& contents) {
-    File const file(check(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), name, writing));
-    Place const place{file.get(), name, writing};
+void look_through(std::string const& file_name, TrajectoryContents const& contents) {
+    File const file(
+        check(H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), file_name, writing));
+    Place const place{file.get(), file_name, writing};
     TrajectorySeries series = open_trajectory(place, contents);
     read_steps(series, place);
     for (Series const* each : series.present()) each->look_at_last(place);
@@ -150,14 +151,14 @@ void look_through(std::string const& name, TrajectoryContents const& contents) {
 /// Returns the number of frames up to the continuation's step. Throws InputError if frames before
 /// it are lost.
 hsize_t frames_kept(std::vector<std::int64_t> const& steps, Continuation const& go_on,
-                    std::string const& name) {
+                    std::string const& file_name) {
     auto const kept = std::find_if(steps.begin(), steps.end(),
                                    [&](std::int64_t step) { return step > go_on.after_step; }) -
                       steps.begin();
     if (kept < go_on.records)
         throw InputError("the trajectory has lost frames: " + std::to_string(kept) + " of the " +
                              std::to_string(go_on.records) + " before the checkpoint are there",
-                         name,
+                         file_name,
                          std::string("restore the whole file, or ") + Continuation::way_beside);
     return static_cast<hsize_t>(kept);
 }
