@@ -21,7 +21,7 @@ namespace {
 class SingleRankPath final : public GpuPath {
   public:
     SingleRankPath(OpenMM::Context& context, DevicePathPlan plan)
-        : GpuPath(context, std::move(plan), evaluations_of_an_order) {
+        : GpuPath(context, std::move(plan), OrderAge::unchecked) {
         compute_with(on_device(context));
         list_ = std::make_unique<PairList>(
             *openmm_, plan_.keeps_list && why_pairs_cannot_be_shared().empty());
@@ -32,7 +32,7 @@ class SingleRankPath final : public GpuPath {
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
         // concerns the previous evaluation, which has ended together with its step
         refuse_trouble();
-        if (take_strayed() || of_this_order_ == 0) order_anew(beads);
+        if (take_strayed() || age_.begins()) order_anew(beads);
         start(beads, timed);
         put_own(beads);
         put_layers();
@@ -65,16 +65,16 @@ class SingleRankPath final : public GpuPath {
             // reached.
             if (timed_) begun_ = exchange_.end - placed_.seconds_since(events_->begun);
             bool const far = std::exchange(flags_->data()->far, 0) != 0;
-            is_anew_ = list_->choose(far || of_this_order_ == 0);
+            is_anew_ = list_->choose(far || age_.begins());
             note_list(is_anew_, openmm_->list_lasts());
         }
         compute(beads);
-        if (list_->is_kept()) of_an_order_ = evaluations_of_a_listed_order;
+        if (list_->is_kept()) age_.set_most(OrderAge::checked);
     }
 
     /// OpenMM returns only when a new list is complete. Layers then begin to compute before.
     void compute_contexts() override {
-        bool const new_order = of_this_order_ == 0;
+        bool const new_order = age_.begins();
         if (!is_anew_) openmm_->compute();
         for (auto const& layer : layers_) layer->choose_list_and_compute(new_order);
         if (is_anew_) openmm_->compute();
@@ -84,8 +84,7 @@ class SingleRankPath final : public GpuPath {
     void order_anew(std::span<DeviceBeads* const> beads) {
         beads_.assign(beads.begin(), beads.end());
         std::vector<Vec3> const x = positions();
-        for (std::size_t i = 0; i < x.size(); ++i)
-            if (!std::isfinite(norm(x[i]))) flags_->data()->trouble = static_cast<std::int64_t>(i);
+        look_for_trouble(x);
         refuse_trouble();
         order(x, {}, mean(x));
     }
@@ -98,7 +97,7 @@ class SingleRankPath final : public GpuPath {
 }  // namespace
 
 GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations)
-    : plan_(std::move(plan)), home_(on_device(home)), of_an_order_(evaluations) {
+    : plan_(std::move(plan)), home_(on_device(home)), age_(evaluations) {
     // Memory, events and arrays that OpenMM's CUDA context owns are allocated while it is current.
     if (!home_->make_current())
         throw ComputationError("OpenMM's CUDA context cannot be made current");
@@ -139,6 +138,17 @@ std::int64_t GpuPath::take_trouble() {
     return own < 0 ? own : plan_.bead[static_cast<std::size_t>(own)];
 }
 
+void GpuPath::look_for_trouble(std::span<Vec3 const> x) {
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (!std::isfinite(norm(x[i]))) flags_->data()->trouble = static_cast<std::int64_t>(i);
+}
+
+std::vector<OpenMmOnDevice*> GpuPath::contexts() const {
+    std::vector<OpenMmOnDevice*> all{openmm_.get()};
+    for (auto const& layer : layers_) all.push_back(&layer->openmm());
+    return all;
+}
+
 std::vector<Vec3> GpuPath::positions() {
     if (beads_.empty())
         throw ComputationError("positions on the GPU were requested before the first evaluation");
@@ -157,7 +167,7 @@ void GpuPath::place_replicas(std::vector<Vec3> const& x) {
     centres.reserve(3 * x.size());
     for (std::size_t i = 0; i < x.size(); ++i)
         for (double const c : replicas_.centre(i).data) centres.push_back(c);
-    upload(*centres_, centres.data(), centres.size());
+    upload(*centres_, centres.data(), centres.size(), stream_);
     check(cudaStreamSynchronize(stream_), "receive the places of replicas");
     double const spacing = replicas_.spacing();
     particles_.box = {{spacing, spacing, spacing}};
@@ -201,7 +211,7 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others,
     std::vector<DeviceBead> beads(x.size());
     for (std::size_t i = 0; i < x.size(); ++i)
         beads[i] = replicas_.empty() ? bead_of(plan_.particle[i], x[i]) : bead_of_replica(i);
-    upload(*own_, beads.data(), beads.size());
+    upload(*own_, beads.data(), beads.size(), stream_);
     check(cudaStreamSynchronize(stream_), "receive OpenMM's order");
     for (DeviceBeads* group : beads_)
         check(cudaStreamSynchronize(stream_of(*group)), "finish its work");
@@ -216,14 +226,13 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others,
     particles_.listed = nullptr;
     particles_.double_listed = nullptr;
     particles_.far = nullptr;
-    of_this_order_ = 0;
-    moved_in_this_order_ = 0;
+    age_.begin();
 }
 
 void GpuPath::note_list(bool anew, double lasts) {
     ++(anew ? pair_lists_.made : pair_lists_.kept);
     if (!anew) return;
-    moved_in_this_order_ += lasts + most_of_a_step;
+    age_.note_list(lasts);
     listed_.take(openmm_->arrays(), stream_);
     if (particles_.double_position)
         particles_.double_listed = static_cast<double const*>(listed_.data());
@@ -264,8 +273,7 @@ void GpuPath::compute(std::span<DeviceBeads* const> beads) {
     events_->forces.record(stream_);
     for (DeviceBeads* group : beads)
         if (!plan_.overlap) events_->forces.hold(stream_of(*group));
-    of_this_order_ =
-        moved_in_this_order_ < distance_of_an_order ? (of_this_order_ + 1) % of_an_order_ : 0;
+    age_.note_evaluation();
 }
 
 void GpuPath::finish(std::span<DeviceBeads* const> beads) {

@@ -11,6 +11,7 @@
 #include "cuda/device/owners.hpp"
 #include "cuda/openmm/gpu_layer.hpp"
 #include "cuda/openmm/openmm_on_device.hpp"
+#include "cuda/openmm/order_age.hpp"
 #include "cuda/openmm/pair_list.hpp"
 #include "cuda/openmm/room.hpp"
 #include "neighbours/bead_tables.hpp"
@@ -28,12 +29,25 @@ Vec3 mean(std::span<Vec3 const> x);
 /// Enqueues the copy of `count` arrived ghosts to their places in OpenMM's arrays.
 void put(std::int64_t count, ArrivedBeads const&, cudaStream_t);
 
+/// Returns the stream of a group of beads.
+inline cudaStream_t stream_of(DeviceBeads const& group) {
+    return static_cast<cudaStream_t>(group.stream());
+}
+
+/// Enqueues a copy of `count` elements from the host to `to`.
+template <class T>
+void upload(Buffer<T> const& to, T const* from, std::size_t count, cudaStream_t stream) {
+    if (count > 0)
+        check(cudaMemcpyAsync(to.data(), from, count * sizeof(T), cudaMemcpyHostToDevice, stream),
+              "receive OpenMM's order");
+}
+
 /// Base class of the coupling: order of particles, positions to OpenMM, forces from OpenMM, timing.
 class GpuPath : public DevicePath {
   public:
     /// `home`: a Context that outlives this object; the chains' and this object's GPU memory is
     /// allocated in its CUcontext. `evaluations`: number of evaluations after which particles are
-    /// reordered.
+    /// reordered (OrderAge).
     GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations);
     ~GpuPath() override;
 
@@ -45,17 +59,6 @@ class GpuPath : public DevicePath {
     std::vector<PairLists> pair_lists_of_layers() const override;
 
   protected:
-    /// Numbers of evaluations after which particles are brought into a new order. OpenMM's own
-    /// integrators reorder after 250 evaluations, which would cost a twentieth of a step of 100,000
-    /// beads. Chains move little in that time. In a condensate of 7,143 chains OpenMM's forces take
-    /// as long before a reordering after 6,600 evaluations as after it (2.11 ms, H200). Without
-    /// checks of how far beads have moved, particles are reordered more often.
-    static constexpr int evaluations_of_an_order = 1000, evaluations_of_a_listed_order = 8000;
-    /// With such checks particles are also reordered before a bead can have moved this distance,
-    /// nm: coordinates far from their periodic cell lose digits in single precision. A bead may
-    /// exceed the distance for which a list lasts by its motion in one step, nm.
-    static constexpr double distance_of_an_order = 80, most_of_a_step = 0.04;
-
     /// Flags that kernels set in pinned memory. The flag `trouble` is the index of an own bead
     /// whose position or force is not finite, `of_ghosts` that of a ghost; -1: none. The
     /// flag `far` is 1 if a bead has moved too far for the current lists, `strayed` if one is too
@@ -72,10 +75,6 @@ class GpuPath : public DevicePath {
             forces{Event::For::order};
     };
 
-    static cudaStream_t stream_of(DeviceBeads const& group) {
-        return static_cast<cudaStream_t>(group.stream());
-    }
-
     /// Sets the Context that computes forces; null: none.
     void compute_with(std::unique_ptr<OpenMmOnDevice> openmm);
     /// Starts an evaluation, and its clock if `timed`.
@@ -83,9 +82,13 @@ class GpuPath : public DevicePath {
     /// Returns the number of an own bead whose position or force is not finite, or -1, and resets
     /// the flag.
     std::int64_t take_trouble();
+    /// Sets the flag `trouble` if a position `x` of an own bead is not finite.
+    void look_for_trouble(std::span<Vec3 const> x);
     /// True if a bead of the last evaluation was too far from the centre of its replica; resets the
     /// flag.
     bool take_strayed() { return std::exchange(flags_->data()->strayed, 0) != 0; }
+    /// Returns the Context of all particles, then those of the layers.
+    std::vector<OpenMmOnDevice*> contexts() const;
     /// Particles of the Context that are not own beads, with their positions in nm.
     struct Others {
         std::span<int const> particle;
@@ -123,15 +126,6 @@ class GpuPath : public DevicePath {
     /// Completes the forces within compute(), after OpenMM's work was enqueued; by default they are
     /// complete.
     virtual void complete_forces() {}
-    /// Enqueues a copy of `count` elements from the host to `to`.
-    template <class T>
-    void upload(Buffer<T> const& to, T const* from, std::size_t count) {
-        if (count > 0)
-            check(cudaMemcpyAsync(to.data(), from, count * sizeof(T), cudaMemcpyHostToDevice,
-                                  stream_),
-                  "receive OpenMM's order");
-    }
-
     DevicePathPlan plan_;
     std::unique_ptr<OpenMmOnDevice> home_, openmm_;
     cudaStream_t stream_ = nullptr;  // OpenMM's stream
@@ -144,9 +138,7 @@ class GpuPath : public DevicePath {
     DeviceParticles particles_;
     std::vector<std::int32_t> place_;  // place of each particle in OpenMM's arrays
     std::vector<DeviceBeads*> beads_;  // groups of beads of the last evaluation
-    /// Evaluations per order and since the last reordering.
-    int of_an_order_, of_this_order_ = 0;
-    double moved_in_this_order_ = 0;  // distance that a bead may have moved since then, nm
+    OrderAge age_;
     bool timed_ = false;
     double begun_ = 0;   // time at which the evaluation began, s
     Interval exchange_;  // interval of the exchange, for clock()

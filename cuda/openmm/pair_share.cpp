@@ -2,6 +2,7 @@
 #include "cuda/openmm/pair_share.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "mpi/collectives.hpp"
 #include "neighbours/pair_cuts.hpp"
@@ -81,6 +82,18 @@ void PairShare::even_out(std::span<OpenMmOnDevice* const> contexts) {
         cuts_[i] = evened_cuts(cuts_[i], of_context);
         has_list_[i] = *std::max_element(of_context.begin(), of_context.end()) > 0;
     }
+}
+
+void PairShare::keep_lists(std::span<OpenMmOnDevice* const> contexts) const {
+    for (std::size_t i = 0; i < contexts.size(); ++i)
+        if (has_list(i)) contexts[i]->keep_list();
+}
+
+double PairShare::lists_last(std::span<OpenMmOnDevice* const> contexts) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < contexts.size(); ++i)
+        if (has_list(i)) least = std::min(least, contexts[i]->list_lasts());
+    return least;
 }
 
 void PairShare::place(std::span<std::int32_t const> own, std::span<std::int32_t const> others) {

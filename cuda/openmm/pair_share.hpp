@@ -48,6 +48,11 @@ class PairShare {
     bool has_list() const {
         return std::find(has_list_.begin(), has_list_.end(), true) != has_list_.end();
     }
+    /// Keeps the lists of the Contexts that have one; see PairList.
+    void keep_lists(std::span<OpenMmOnDevice* const> contexts) const;
+    /// Returns the distance, nm, that particles may move before a list must be rebuilt. All lists
+    /// are then rebuilt at once, by all ranks.
+    double lists_last(std::span<OpenMmOnDevice* const> contexts) const;
     /// Sets the places of beads in OpenMM's arrays. Own beads are listed in the order in which they
     /// are sent, others in the order in which they are received.
     void place(std::span<std::int32_t const> own, std::span<std::int32_t const> others);

@@ -139,10 +139,10 @@ class ShortLanes {
             sweep_.join_bodies_at_once(count_, restricted, kept, UncheckedFactorizer{sure});
         if (!sure) segment = sweep_.join_bodies(is_.first, count_, restricted, kept);
         lanes_.both_passes(segment, restricted_[0], [&](Ends const& ends) {
-            sweep_.forces(count_, kept, ends.first, ends.next,
-                          [&](int i, State const& inboard, State const& outboard) {
-                              kept.put(i, Ends{inboard, outboard});
-                          });
+            dca::forces_within<Sweep>(count_, kept, ends.first, ends.next,
+                                      [&](int i, State const& inboard, State const& outboard) {
+                                          kept.put(i, Ends{inboard, outboard});
+                                      });
         });
     }
 

@@ -3,12 +3,31 @@
 // its warps merges those as well, so that it waits only once.
 #pragma once
 
-#include <type_traits>
-
+#include "cuda/short/short_memory.cuh"
 #include "cuda/short/short_thread.cuh"
-#include "cuda/sweeps/merge_teams.cuh"
 
 namespace catena::cuda::kernels {
+
+/// Number of levels of the tree of warps.
+__device__ inline int levels_of_top(OneChain const& chain) {
+    int levels = 0;
+    while (1 << levels < chain.warps) ++levels;
+    return levels;
+}
+/// Descends from the ends of a pair of `distance` items each to the ends of the half that
+/// contains item `own`. `count`: number of items.
+template <class Sweep>
+__device__ void descend_pair(MergeTeam<Sweep> const& team,
+                             typename MemoryOfTeams<Sweep>::Ends& ends,
+                             typename MemoryOfTeams<Sweep>::Records const& records, int place,
+                             int own, int distance, int count) {
+    int const middle = (own & ~(2 * distance - 1)) + distance;
+    bool const exists = middle < count;
+    auto const there =
+        team.force(records.record(place + (exists ? middle : 0)), ends.first, ends.next);
+    ends.next = dca::either(exists && own < middle, there, ends.next);
+    ends.first = dca::either(exists && own >= middle, there, ends.first);
+}
 
 /// Work of one warp, in its block's shared memory.
 template <class Sweep>
@@ -17,18 +36,11 @@ class ShortTeams {
     using Node = typename Sweep::Node;
     using State = typename Sweep::Sweeps::State;
     using Team = MergeTeam<Sweep>;
-    using Records = typename Team::Segments;
+    using Memory = MemoryOfTeams<Sweep>;
+    using Ends = typename Memory::Ends;
+    using Kept = BodiesOfLane<Sweep>;
     static constexpr int bodies_of_warp = lanes_of_warp * dca::part_length;
     static constexpr int teams_of_warp = lanes_of_warp / Team::lanes;
-    /// Places in shared memory: one per body of each lane (body i of all lanes together), then one
-    /// per lane for its part.
-    static constexpr int of_parts = dca::part_length * lanes_of_warp,
-                         places = of_parts + lanes_of_warp;
-    static constexpr int idle = 0;  // a place that no thread writes while warps merge
-    /// Forces at a segment's first joint and at the joint after it.
-    struct Ends {
-        State first, next;
-    };
 
   public:
     /// Number of warps per merging warp, itself included; each of the other threads has one or two
@@ -41,41 +53,32 @@ class ShortTeams {
     /// Size of a block's shared memory in doubles: `joining` merging warps per block, `warps` in
     /// the launch.
     static constexpr std::size_t numbers(int joining, int warps) {
-        return 2 + Records::size(warps) + of_top_words +
-               static_cast<std::size_t>(joining) * of_group;
+        return Memory::numbers(joining, warps);
     }
     __device__ ShortTeams(OneChain const& chain, Sweep const& sweep, double* memory)
         : chain_(chain),
           sweep_(sweep),
           is_(chain, true),
           own_(is_.lane / Team::lanes),
-          inbox_(reinterpret_cast<std::uint64_t*>(memory)),
-          top_{memory + 2},
-          at_top_(reinterpret_cast<int*>(top_.origin + Records::size(chain.warps))),
-          records_{top_.origin + Records::size(chain.warps) + of_top_words +
-                   static_cast<std::size_t>(is_.group) * of_group},
-          gains_{records_.origin + Records::size(places)},
-          ends_{gains_.origin + Gains::size(of_parts)},
-          restricted_(
-              reinterpret_cast<int*>(ends_.origin + PackedRecords<Ends>::size(lanes_of_warp))) {}
+          in_(chain, is_.group, memory) {}
 
     /// Prepares the launch while the previous one may still run. It reads nothing that a launch
     /// writes.
     __device__ void open() {
         if (threadIdx.x == 0 && !is_alone(chain_))
-            inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
+            in_.inbox.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
         __syncwarp();
         arrive_at_cluster();
         if (is_.beside >= 0)
             for (int i = is_.beside; has_body(i); i += is_.warps_beside)
-                restricted_[place_of(is_.lane, i)] = sweep_.s.restricted[is_.first + i];
+                in_.restricted[Memory::place_of(is_.lane, i)] = sweep_.s.restricted[is_.first + i];
         for (int warp = static_cast<int>(threadIdx.x); warp < chain_.warps;
              warp += static_cast<int>(blockDim.x))
-            at_top_[warp] = sweep_.s.restricted[warp * bodies_of_warp];
+            in_.at_top[warp] = sweep_.s.restricted[warp * bodies_of_warp];
     }
     /// Performs both passes and computes the accelerations of the thread's bodies.
     __device__ void both_passes() const {
-        Kept const kept{records_, gains_, is_.lane};
+        Kept const kept{in_.records, in_.gains, is_.lane};
         bool const joins = is_.beside < 0;
         typename Sweep::Body body;
         Turning turning;
@@ -119,77 +122,13 @@ class ShortTeams {
   private:
     using Passed = typename Sweep::Passed;
     using Factorizer = BranchlessFactorizer<false>;
-    using Directions = Vector<double, Sweep::K>;
-    using Square = Matrix<double, Sweep::K, Sweep::K>;
     using Biases = dca::SegmentBias<double, Sweep::K>;
     using Turning = typename BodiesOf<Sweep>::Turning;
-    using Gains = PackedRecords<Square>;
-    /// Sizes of arrays of integers, two of which fit in a double.
-    static constexpr std::size_t of_top_words = most_warps_of_chain / 2,
-                                 of_bodies_words = of_parts / 2;
-    /// Size of the shared memory of a merging warp in doubles.
-    static constexpr std::size_t of_group = Records::size(places) + Gains::size(of_parts) +
-                                            PackedRecords<Ends>::size(lanes_of_warp) +
-                                            of_bodies_words;
     static constexpr int steps_of_parts = dca::parts_of_run - 1,
                          steps_of_warp =
                              steps_of_parts + levels_above(lanes_of_warp / dca::parts_of_run);
-    /// Place of body i of a lane, and place of a lane's merged part.
-    __device__ static int place_of(int lane, int i) { return i * lanes_of_warp + lane; }
-    __device__ static int place_of_part(int lane) { return of_parts + lane; }
     __device__ bool has_body(int i) const { return is_.is_here(i, is_.first + i); }
 
-    /// Records of a lane's bodies: first a body's segment, after merges the terms that its joint
-    /// passes on, and finally the forces.
-    struct Kept {
-        Records records;
-        Gains gains;
-        int lane;
-        // The biases overwrite the joint's inboard matrix, which the outward pass does not need.
-        static constexpr int at_bias = Team::at_inboard;
-        static_assert(numbers_of<Biases> <= numbers_of<Square>);
-
-        template <class T>
-        __device__ void put(int i, T const& value) const {
-            write(of(i), value);
-        }
-        template <class T>
-        __device__ T get(int i) const {
-            double const* const record = of(i);
-            if constexpr (std::is_same_v<T, Passed>) {
-                if (i == 0) {
-                    Segment const own = Team::template record<Segment>(record);
-                    return {{}, own.matrix.z12, own.bias};
-                }
-                return {Team::template record<Symmetric<double, Sweep::K>>(record),
-                        Team::template record<Square>(record + Team::at_outboard),
-                        Team::template record<Biases>(record + at_bias)};
-            } else {
-                return Team::template record<T>(record);
-            }
-        }
-        /// Stores the gain of the joint before body i (force at it per force after the body).
-        __device__ void put_gain(int i, Square const& gain) const {
-            gains.store(place_of(lane, i), gain);
-        }
-        __device__ Square gain(int i) const { return gains.load(place_of(lane, i)); }
-        /// Stores the offset of the force at the joint before body i.
-        __device__ void put_offset(int i, Directions const& offset) const {
-            write(of(i) + at_bias, offset);
-        }
-        __device__ Directions offset(int i) const {
-            return Team::template record<Directions>(of(i) + at_bias);
-        }
-
-      private:
-        __device__ double* of(int i) const { return records.record(place_of(lane, i)); }
-        template <class T>
-        __device__ static void write(double* record, T const& value) {
-            auto const values = __builtin_bit_cast(NumbersOf<T>, value);
-            CATENA_UNROLL
-            for (int n = 0; n < numbers_of<T>; ++n) record[n] = values[n];
-        }
-    };
     /// Two segments that a team merges, unless there is no second one. The merged segment
     /// overwrites the first, the node the second.
     struct Pair {
@@ -204,15 +143,15 @@ class ShortTeams {
         for (int part = is_.beside * teams_of_warp + own_; part < lanes_of_warp;
              part += is_.warps_beside * teams_of_warp) {
             int const count = is_.bodies_of(part);
-            double *const first = records_.record(part), *const joined =
-                                                             records_.record(place_of_part(part));
+            double *const first = in_.records.record(part), *const joined = in_.records.record(
+                                                                Memory::place_of_part(part));
             if (count == 1) team.copy(first, joined);
             auto const pair = [&](int i) {
-                int const place = place_of(part, i);
+                int const place = Memory::place_of(part, i);
                 bool const works = i < count;
                 return Pair{i == 1 ? first : joined,
-                            records_.record(place),
-                            {is_.first_of(part) + i, works ? restricted_[place] : 0},
+                            in_.records.record(place),
+                            {is_.first_of(part) + i, works ? in_.restricted[place] : 0},
                             works};
             };
             Pair next = pair(1);
@@ -236,9 +175,9 @@ class ShortTeams {
                   outboard = inboard + apart;
         bool const works = outboard < lanes_of_warp && is_.first_of(outboard) < chain_.bodies;
         int const there = works ? outboard : 0;
-        return {records_.record(works ? place_of_part(inboard) : idle),
-                records_.record(works ? place_of_part(outboard) : idle),
-                {is_.first_of(there), restricted_[place_of(there, 0)]},
+        return {in_.records.record(works ? Memory::place_of_part(inboard) : Memory::idle),
+                in_.records.record(works ? Memory::place_of_part(outboard) : Memory::idle),
+                {is_.first_of(there), in_.restricted[Memory::place_of(there, 0)]},
                 works};
     }
     /// Returns merge number i of pairs of warps at a level of the top.
@@ -246,10 +185,10 @@ class ShortTeams {
         int const inboard = i << (level + 1), outboard = inboard + (1 << level);
         bool const works = outboard < chain_.warps;
         int const there = works ? outboard : 0;
-        double* const nowhere = records_.record(idle);
-        return {works ? top_.record(inboard) : nowhere,
-                works ? top_.record(outboard) : nowhere,
-                {there * bodies_of_warp, at_top_[there]},
+        double* const nowhere = in_.records.record(Memory::idle);
+        return {works ? in_.top.record(inboard) : nowhere,
+                works ? in_.top.record(outboard) : nowhere,
+                {there * bodies_of_warp, in_.at_top[there]},
                 works};
     }
     /// Merges pair(step, i) for i of [0, count(step)) by the warp's teams, step by step. Each pair
@@ -269,12 +208,6 @@ class ShortTeams {
             __syncwarp();
         }
     }
-    /// Number of levels of the tree of warps.
-    __device__ int levels_of_top() const {
-        int levels = 0;
-        while (1 << levels < chain_.warps) ++levels;
-        return levels;
-    }
     /// Inward pass by the merging warps: each merges its own parts, and the block's first one
     /// merges the segments of all warps.
     __device__ void climb() const {
@@ -287,12 +220,13 @@ class ShortTeams {
             },
             [&](int step, int i) { return of_lanes(step, i); });
         if (is_.warp < chain_.warps)
-            send_to_all<numbers_of<Segment>>(chain_, inbox_, is_.lane, records_.record(of_parts),
-                                             [&](int n) { return &top_.number(is_.warp, n); });
+            send_to_all<numbers_of<Segment>>(chain_, in_.inbox, is_.lane,
+                                             in_.records.record(Memory::of_parts),
+                                             [&](int n) { return &in_.top.number(is_.warp, n); });
         if (is_.group > 0) return;
-        if (!is_alone(chain_)) inbox_.wait();
+        if (!is_alone(chain_)) in_.inbox.wait();
         join_steps(
-            levels_of_top(),
+            levels_of_top(chain_),
             [&](int level) { return (chain_.warps + (2 << level) - 1) >> (level + 1); },
             [&](int level, int i) { return of_warps(level, i); });
     }
@@ -300,10 +234,11 @@ class ShortTeams {
     /// at its runs and parts by teams, and at bodies by each lane.
     __device__ void go_down() const {
         Team const team;
-        Ends ends{sweep_.first_force({0, at_top_[0]}, top_.load(0), Factorizer{}), State::zero()};
+        Ends ends{sweep_.first_force({0, in_.at_top[0]}, in_.top.load(0), Factorizer{}),
+                  State::zero()};
         CATENA_NO_UNROLL
-        for (int level = levels_of_top() - 1; level >= 0; --level)
-            go_down(team, ends, top_, 0, is_.warp, 1 << level, chain_.warps);
+        for (int level = levels_of_top(chain_) - 1; level >= 0; --level)
+            descend_pair<Sweep>(team, ends, in_.top, 0, is_.warp, 1 << level, chain_.warps);
         // Number of lanes that have bodies.
         int const lanes =
             (chain_.bodies - is_.first_of(0) + dca::part_length - 1) / dca::part_length;
@@ -313,51 +248,34 @@ class ShortTeams {
             Ends of_run = ends;
             CATENA_NO_UNROLL
             for (int distance = lanes_of_warp / 2; distance >= dca::parts_of_run; distance /= 2)
-                go_down(team, of_run, records_, of_parts, lane, distance, lanes);
+                descend_pair<Sweep>(team, of_run, in_.records, Memory::of_parts, lane, distance,
+                                    lanes);
             CATENA_NO_UNROLL
             for (int p = dca::parts_of_run - 1; p > 0; --p) {
                 bool const exists = lane + p < lanes;
                 State const there =
-                    team.force(records_.record(place_of_part(exists ? lane + p : 0)), of_run.first,
-                               of_run.next);
+                    team.force(in_.records.record(Memory::place_of_part(exists ? lane + p : 0)),
+                               of_run.first, of_run.next);
                 if (!exists) continue;
-                if (team.leads()) ends_.store(lane + p, {there, of_run.next});
+                if (team.leads()) in_.ends.store(lane + p, {there, of_run.next});
                 of_run.next = there;
             }
-            if (team.leads()) ends_.store(lane, of_run);
+            if (team.leads()) in_.ends.store(lane, of_run);
         }
         __syncwarp();
-        Ends const own = ends_.load(is_.lane);
-        Kept const kept{records_, gains_, is_.lane};
+        Ends const own = in_.ends.load(is_.lane);
+        Kept const kept{in_.records, in_.gains, is_.lane};
         if (int const count = is_.bodies_of(is_.lane); count > 0)
-            sweep_.forces_by_gains(count, kept, own.first, own.next,
-                                   [&](int i, State const& inboard, State const& outboard) {
-                                       kept.put(i, Ends{inboard, outboard});
-                                   });
+            dca::forces_by_gains<Sweep>(count, kept, own.first, own.next,
+                                        [&](int i, State const& inboard, State const& outboard) {
+                                            kept.put(i, Ends{inboard, outboard});
+                                        });
     }
-    /// Descends from the ends of a pair of `distance` items each to the ends of the half that
-    /// contains item `own`. `count`: number of items.
-    __device__ static void go_down(Team const& team, Ends& ends, Records const& records, int place,
-                                   int own, int distance, int count) {
-        int const middle = (own & ~(2 * distance - 1)) + distance;
-        bool const exists = middle < count;
-        State const there =
-            team.force(records.record(place + (exists ? middle : 0)), ends.first, ends.next);
-        ends.next = dca::either(exists && own < middle, there, ends.next);
-        ends.first = dca::either(exists && own >= middle, there, ends.first);
-    }
-
     OneChain const& chain_;
     Sweep const& sweep_;
     ShortThread is_;
     int own_;  // team in the warp
-    Inbox inbox_;
-    Records top_;
-    int* at_top_;  // directions that the joints before warps restrict
-    Records records_;
-    Gains gains_;
-    PackedRecords<Ends> ends_;  // forces at the ends of lanes' parts
-    int* restricted_;           // directions that the joints of the warp's bodies restrict
+    Memory in_;
 };
 
 }  // namespace catena::cuda::kernels

@@ -3,42 +3,33 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
-#include <memory>
 #include <optional>
 
-#include "cuda/device/launch.cuh"
 #include "cuda/exchange/peer_exchange.cuh"
+#include "cuda/space/device_access.cuh"
 #include "cuda/space/device_blocks.cuh"
 #include "cuda/space/device_model.cuh"
 #include "cuda/space/device_records.cuh"
 #include "cuda/space/device_scan.cuh"
 #include "cuda/space/device_tree.cuh"
-#include "cuda/space/kernels.cuh"
 #include "dca/host_space.hpp"
 
 namespace catena::cuda {
 
 /// Space whose arrays are in the memory of the current GPU.
-class DeviceSpace : public SharedModels<DeviceModel, ModelArrays> {
+class DeviceSpace : public DeviceAccess, public SharedModels<DeviceModel, ModelArrays> {
   public:
     /// Loops return before they are complete; wait() waits for them.
     static constexpr bool answers_at_once = false;
-    /// Makes a space with a stream of its own. Copies share the stream and the memory for answers,
-    /// so that only one thread at a time may call largest() or get(). The executor must outlive all
-    /// copies.
-    explicit DeviceSpace(Executor const& on_host)
-        : on_host_(&on_host),
-          stream_(std::make_shared<Stream>()),
-          answer_(std::make_shared<Buffer<unsigned long long>>(1)),
-          letter_(std::make_shared<PinnedBuffer<double>>(most_of_a_body)) {}
+    /// Makes a space with a stream of its own, which copies share (DeviceAccess). The executor must
+    /// outlive all copies.
+    explicit DeviceSpace(Executor const& on_host) : on_host_(&on_host) {}
     /// Makes a space with direct connections to other ranks' GPUs, if possible. Collective.
     DeviceSpace(Executor const& on_host, Communicator const& communicator) : DeviceSpace(on_host) {
         peers_ = Peers(communicator);
     }
     /// Returns the executor of the work that remains on the host.
     Executor const& on_host() const { return *on_host_; }
-    cudaStream_t stream() const { return stream_->get(); }
 
     // Types of data in the GPU's memory; HostSpace describes each of them.
 
@@ -82,21 +73,6 @@ class DeviceSpace : public SharedModels<DeviceModel, ModelArrays> {
                 blocks.teams(), action);
         started();
     }
-    /// Calls action(k) for k < count.
-    template <class Action>
-    void for_each(std::int64_t count, Action const& action) const {
-        if (count == 0) return;
-        launch({blocks(gpu_order::padded(count)), kernels::threads}, stream(),
-               kernels::for_each<Action>, count, action);
-    }
-    /// Calls action(item) for each item.
-    template <class T, class Action>
-    void over(Buffer<T> const& items, Action const& action) const {
-        if (items.size() == 0) return;
-        auto const count = static_cast<std::int64_t>(items.size());
-        launch({blocks(count), kernels::threads}, stream(), kernels::over<T, Action>, items.data(),
-               count, action);
-    }
     /// Performs the inward pass of a scan.
     template <class Scan>
     void climb(ScanTree const& tree, Scan const& scan) const {
@@ -130,50 +106,6 @@ class DeviceSpace : public SharedModels<DeviceModel, ModelArrays> {
     /// True if so few items leave the GPU with idle threads.
     static bool has_threads_to_spare(std::int64_t items) {
         return items <= most_items_with_threads_to_spare;
-    }
-    /// Returns the largest |value(i)|, i < count, or NaN if a value is NaN. Waits.
-    template <class Value>
-    double largest(std::int64_t count, Value const& value) const {
-        if (count == 0) return 0;
-        set_answer(0);
-        launch({blocks(count), kernels::threads}, stream(), kernels::largest<Value>, count,
-               answer_->data(), value);
-        unsigned long long const bits = get(answer_->data());
-        double found;
-        std::memcpy(&found, &bits, sizeof(found));
-        return found;
-    }
-
-    /// Returns the value at `place` in the GPU's memory. Waits.
-    template <class T>
-    T get(T const* place) const {
-        T value;
-        check(cudaMemcpyAsync(&value, place, sizeof(T), cudaMemcpyDeviceToHost, stream()),
-              "return a value");
-        wait();
-        return value;
-    }
-    /// Writes a value to `place` in the GPU's memory. Waits.
-    template <class T>
-    void put(T* place, T const& value) const {
-        check(cudaMemcpyAsync(place, &value, sizeof(T), cudaMemcpyHostToDevice, stream()),
-              "receive a value");
-        wait();  // `value` may go out of scope
-    }
-    /// Returns the numbers of body k. Waits.
-    template <int D>
-    Vector<double, D> get(ConstView<D> field, std::int64_t k) const {
-        static_assert(D <= most_of_a_body);
-        for_each(D, kernels::TakeBody{number_of(field, k), letter_->data()});
-        wait();
-        Vector<double, D> value;
-        std::copy_n(letter_->data(), D, value.data);
-        return value;
-    }
-    /// Writes the numbers of body k.
-    template <int D>
-    void put(View<D> field, std::int64_t k, Vector<double, D> const& value) const {
-        for_each(D, kernels::PutBody<D>{number_of(field, k), value});
     }
     /// Exchanges one body's numbers with neighbouring ranks. Collective.
     template <int D>
@@ -222,59 +154,6 @@ class DeviceSpace : public SharedModels<DeviceModel, ModelArrays> {
         return shared_passes_by(
             kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)}, tree, top, scan);
     }
-    /// Returns a copy of the field on the host. Waits.
-    template <int D>
-    Field<D> read(DeviceField<D> const& field) const {
-        Field<D> host(field.size());
-        field.download(host.view(), stream());
-        wait();
-        return host;
-    }
-    DirectionsField read(DeviceDirections const& directions) const {
-        DirectionsField host(directions.size(), directions.directions());
-        directions.download(host.view(), stream());
-        wait();
-        return host;
-    }
-    /// Overwrites the field with the host's values. Waits.
-    void write(DeviceDirections& directions, DirectionsField const& host) const {
-        directions.upload(host.view(), stream());
-        wait();
-    }
-    /// Calls change(view) on a host copy of the field and writes it back. Waits.
-    template <int D, class Edit>
-    void edit(DeviceField<D>& field, Edit const& change) const {
-        give_back(field, read(field), change);
-    }
-    /// Calls all(view) on a field of zeros on the host and writes it to the GPU. Waits.
-    template <int D, class Set>
-    void set(DeviceField<D>& field, Set const& all) const {
-        give_back(field, Field<D>(field.size()), all);
-    }
-    /// Host copy of a field, in pinned memory if it is large.
-    template <int D>
-    struct Mirror {
-        Field<D> field;
-        PinnedPages pages = {};  // pins the field's memory
-    };
-    /// Copies the field to its mirror and returns the mirror's view. Waits.
-    template <int D>
-    View<D> pull(DeviceField<D>& field, Mirror<D>& mirror) const {
-        if (mirror.field.size() != field.size()) {
-            mirror.pages = PinnedPages();
-            mirror.field = Field<D>(field.size());
-            mirror.pages = PinnedPages(mirror.field.storage());
-        }
-        field.download(mirror.field.view(), stream());
-        wait();
-        return mirror.field.view();
-    }
-    /// Enqueues the copy of the mirror to the field.
-    template <int D>
-    void push(DeviceField<D>& field, Mirror<D> const& mirror) const {
-        field.upload(mirror.field.view(), stream());
-    }
-
     /// Returns the time of one action, s, for each of `repeat` repetitions of `chained` consecutive
     /// actions. They are launched as one CUDA graph, unless the action involves the host
     /// (`asks_host`).
@@ -284,7 +163,7 @@ class DeviceSpace : public SharedModels<DeviceModel, ModelArrays> {
         auto const all = [&] {
             for (int i = 0; i < chained; ++i) action();
         };
-        if (peers_) peers_.meet_next(stream_);
+        if (peers_) peers_.meet_next(shared_stream());
         std::optional<Graph> graph;
         if (!asks_host) graph.emplace(stream(), all);
         Event start(Event::For::clock), end(Event::For::clock);
@@ -298,24 +177,17 @@ class DeviceSpace : public SharedModels<DeviceModel, ModelArrays> {
         }
         return seconds;
     }
-    /// Waits until all work of the stream is complete.
-    void wait() const { stream_->wait(); }
     /// The host's thread that drives the GPU.
     int threads() const { return 1; }
 
   private:
     /// Largest number of items for which threads remain idle.
     static constexpr std::int64_t most_items_with_threads_to_spare = 16384;
-    /// Returns the address of body k's first number in the GPU's memory.
-    template <class Real, int D>
-    static Real* number_of(FieldView<Real, D> const& field, std::int64_t k) {
-        return field.origin + gpu_order::first_number(k, field.pitch);
-    }
     /// Enqueues the kernel of a direct exchange, ordered after other exchanges.
     template <class Numbers, class First>
     void exchange(Direct const& direct, Numbers const& numbers, kernels::BodiesBeside const& beside,
                   First const& first) const {
-        peers_.meet_next(stream_);
+        peers_.meet_next(shared_stream());
         kernels::exchange<<<1, kernels::threads_of_exchange, 0, stream()>>>(direct, numbers, beside,
                                                                             first);
         started();
@@ -333,37 +205,18 @@ class DeviceSpace : public SharedModels<DeviceModel, ModelArrays> {
     static kernels::BodyNumbers numbers_of(BodyExchange<D> const& e) {
         return {number_of(e.from, e.i), number_of(e.into, e.j)};
     }
-    /// Returns the number of blocks for `count` threads.
-    static unsigned blocks(std::int64_t count) {
-        return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads);
-    }
-    /// Sets all bytes of the answer to `byte`.
-    void set_answer(int byte) const {
-        check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()),
-              "be queried");
-    }
-    /// Applies `change` to a host field and uploads it.
-    template <int D, class Change>
-    void give_back(DeviceField<D>& field, Field<D> host, Change const& change) const {
-        change(host.view());
-        field.upload(std::as_const(host).view(), stream());
-        wait();
-    }
     /// Throws ComputationError if the last launch failed.
     static void started() { check(cudaGetLastError(), "start a kernel"); }
     /// Performs both passes of a sweep or a scan with `exchange`, ordered after other exchanges.
     template <class AnyTree, class Sweep, class Numbers>
     bool shared_passes_by(kernels::ExchangeByBlock<Numbers> const& exchange, AnyTree const& tree,
                           AnyTree const& top, Sweep const& sweep) const {
-        return tree.shared_passes(sweep, ExchangeInTurn<Numbers>{peers_, stream_, exchange}, top,
-                                  stream());
+        return tree.shared_passes(sweep, ExchangeInTurn<Numbers>{peers_, shared_stream(), exchange},
+                                  top, stream());
     }
 
     /// Executor of the work that remains on the host.
     Executor const* on_host_;
-    std::shared_ptr<Stream> stream_;
-    std::shared_ptr<Buffer<unsigned long long>> answer_;  // memory for the answer of largest()
-    std::shared_ptr<PinnedBuffer<double>> letter_;        // memory for the answer of get()
     /// Direct connections to other ranks' GPUs; none by default.
     Peers peers_;
 };

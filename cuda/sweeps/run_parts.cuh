@@ -5,6 +5,7 @@
 #include "cuda/sweeps/branchless_math.cuh"
 #include "cuda/sweeps/prefetch.cuh"
 #include "cuda/sweeps/runs_view.hpp"
+#include "dca/part_descent.hpp"
 
 namespace catena::cuda::kernels {
 
@@ -62,7 +63,7 @@ __device__ void move_some(int begin, int end, int step, Get const& get, Put cons
     }
 }
 
-/// Sweep whose joined(), part(), read() and down() accept factorizers (FusedSweep).
+/// Sweep whose joined(), part(), read() and descend_part() accept factorizers (FusedSweep).
 template <class Sweep>
 concept takes_factors = requires(Sweep const& sweep, typename Sweep::Segment const& segment,
                                  typename Sweep::Node& node) {
@@ -106,10 +107,10 @@ template <bool unroll, class Sweep, class Part, class State, class Passages>
 __device__ void down_quickly(Sweep const& sweep, dca::Run const& run, int p, Part const& part,
                              State const& first, State const& next, Passages&& passages) {
     if constexpr (Sweep::K > 1)
-        sweep.template down<unroll>(run, p, part, first, next, passages,
-                                    BranchlessFactorizer<false>{});
+        dca::descend_part<unroll>(sweep, run, p, part, first, next, passages,
+                                  BranchlessFactorizer<false>{});
     else
-        sweep.template down<unroll>(run, p, part, first, next, passages);
+        dca::descend_part<unroll>(sweep, run, p, part, first, next, passages);
 }
 
 /// Assignment of a block's threads to runs and parts. Thread t has part t / lanes mod parts_of_run

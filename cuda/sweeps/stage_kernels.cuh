@@ -75,7 +75,7 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
         DeviceStage const stage = is_top ? top : is_upper ? upper : lower;
         unsigned const block = is_top ? 0 : is_upper ? blockIdx.x - lower.blocks : blockIdx.x;
         int const before =
-            is_top ? BlockOfStage<Sweep>::size(upper, static_cast<int>(blockDim.x)) : 0;
+            is_top ? PlacesOfBlock<Sweep>::size(upper, static_cast<int>(blockDim.x)) : 0;
         action(BlockOfStage<Sweep>(stage, block, sweep, shared_numbers + before));
     };
     CATENA_NO_UNROLL

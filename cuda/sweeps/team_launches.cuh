@@ -12,13 +12,14 @@ template <bool whole, class Sweep>
 __device__ __forceinline__ void climb_by_team(Sweep const& sweep, dca::Run const& run, int lane,
                                               bool works) {
     RevoluteTeam<whole> team(BodiesOfTeam<whole>(run), lane, works);
-    dca::RunWorkspace<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
+    auto const of_run = sweep.whole(run);
+    dca::RunWorkspace<typename Sweep::Sweeps> kept(sweep.s, run, of_run.goes_by_all());
     BodiesAhead const ahead(shared_numbers, lane);
     auto const put_row = [&](int i, dca::SegmentRow<double, Sweep::K> const& row) {
-        sweep.store_row(run.slot, i, row);
+        of_run.store_row(i, row);
     };
-    if (sweep.follows()) {
-        team.climb(sweep.with_loads(run), sweep.goes_by_all(), ahead, kept, put_row);
+    if (of_run.follows()) {
+        team.climb(of_run.with_loads(), of_run.goes_by_all(), ahead, kept, put_row);
     } else {
         auto const body = [&](int i) {
             return sweep.s.leaf.revolute(sweep.bodies.loads, run.body + i);
@@ -31,21 +32,22 @@ __device__ __forceinline__ void climb_by_team(Sweep const& sweep, dca::Run const
 template <bool whole, class Sweep>
 __device__ __forceinline__ void descend_by_team(Sweep const& sweep, dca::Run const& run, int lane,
                                                 bool works) {
+    auto const of_run = sweep.whole(run);
     BodiesOfTeam<whole> const bodies(run);
     bool const leads = works && lane % lanes_of_team == 0;
     dca::RunWorkspace<typename Sweep::Sweeps> const kept(sweep.s, run, false);
     auto const first = sweep.s.forces.load(run.body), next = sweep.s.forces.load(run.next);
     RevolutesBehind<Sweep, whole> const behind(bodies, shared_numbers, lane);
-    behind.fetch(kept, first, [&](int i) { return sweep.frame(run, kept, i); });
+    behind.fetch(kept, first, [&](int i) { return of_run.frame(kept, i); });
     dca::descend_revolutes<double>(
         bodies.count(), false, [&](int i) { return behind.frame(i); }, behind, first, next,
         [&](int i, dca::RevoluteFrame<double> const& frame,
             dca::BodyAcceleration<double> const& a) {
-            if (leads) sweep.accelerate(run, i, frame, a);
+            if (leads) of_run.accelerate(i, frame, a);
         },
         [](int, dca::BodyAcceleration<double>&) {},
         [&](int i, double of_revolute) {
-            if (leads) sweep.joint_acceleration(run, i, of_revolute);
+            if (leads) of_run.joint_acceleration(i, of_revolute);
         });
 }
 /// True if `says` is true on all lanes of the warp. It uses shuffles, because after a vote nvcc 13
@@ -71,7 +73,7 @@ __global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep s
     std::int64_t const wanted = thread() / lanes_of_team;
     bool const works = wanted < runs.count;
     dca::Run const run = runs[works ? wanted : runs.count - 1];
-    bool const by_revolutes = run.count > 2 && sweep.takes(run);
+    bool const by_revolutes = run.count > 2 && sweep.whole(run).is_on_revolutes();
     bool const whole = all_lanes(lane, by_revolutes && run.count == dca::longest_run);
     wait_for_launch();
     if (whole) {
@@ -93,7 +95,8 @@ __global__ void __launch_bounds__(32) descend_runs_by_teams(RunsView runs, Sweep
     std::int64_t const wanted = thread() / lanes_of_team;
     bool const works = wanted < runs.count;
     dca::Run const run = runs[works ? wanted : runs.count - 1];
-    bool const by_revolutes = run.count > 2 && !sweep.goes_by_all() && sweep.takes(run);
+    bool const by_revolutes =
+        run.count > 2 && !sweep.out.by_all_bodies() && sweep.whole(run).is_on_revolutes();
     bool const whole = all_lanes(lane, by_revolutes && run.count == dca::longest_run);
     wait_for_launch();
     if (whole) {

@@ -48,9 +48,9 @@ template <class Sweep>
 concept WholeRunSweep =
     OutwardSweep<Sweep> && takes_whole_runs<Sweep> &&
     requires(Sweep const& sweep, Run const& run, typename Sweep::Directions const& force) {
-        { sweep.takes(run) } -> std::same_as<bool>;
-        { sweep.climb(run) } -> std::same_as<typename Sweep::Segment>;
-        sweep.descend(run, force, force);
+        { sweep.whole(run).is_on_revolutes() } -> std::same_as<bool>;
+        { sweep.whole(run).climb() } -> std::same_as<typename Sweep::Segment>;
+        sweep.whole(run).descend(force, force);
     };
 
 /// A kind of body as the tree sees it: it has K directions per handle, is made from a group's

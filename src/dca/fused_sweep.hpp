@@ -4,10 +4,8 @@
 // than to store.
 #pragma once
 
-#include <cstddef>
-
-#include "dca/run_kinematics.hpp"
-#include "dca/run_workspace.hpp"
+#include "dca/part_descent.hpp"
+#include "dca/revolute_run.hpp"
 
 namespace catena::dca {
 
@@ -162,6 +160,8 @@ struct FusedSweep {
     /// True if parts are always processed in rolled loops: with larger handles, unrolled code
     /// overflows a processor's instruction cache.
     static constexpr bool in_loops = K > 3;
+    /// Storage of a part's passages in registers.
+    using PassagesHere = PassagesInRegisters<Passage, in_loops>;
     /// Arrays, bodies and results of the sweep.
     Sweeps s;
     Bodies bodies;
@@ -181,100 +181,8 @@ struct FusedSweep {
     MatrixSweep<Leaf> matrices() const { return {s}; }
     Biases biases() const { return {{s, bodies.loads, out}, *this}; }
 
-    /// True if the run is computed by articulated-body inertias. It has two bodies or more on
-    /// revolute joints and no jointed tip.
-    CATENA_HD bool takes(Run const& run) const {
-        bool revolutes =
-            run.count > 1 && !has_jointed_tip(s.leaf.group(), run.body + run.count - 1);
-        if (run.count == longest_run) {  // The unrolled loop issues all reads together.
-            CATENA_UNROLL
-            for (int i = 1; i < longest_run; ++i) revolutes &= s.restricted[run.body + i] == K;
-            return revolutes;
-        }
-        for (int i = 1; i < run.count; ++i) revolutes &= s.restricted[run.body + i] == K;
-        return revolutes;
-    }
-    /// Inward pass of a run on revolute joints: returns its segment and stores what descend()
-    /// needs.
-    CATENA_HD_IN_PLACE Segment climb(Run const& run) const {
-        RunWorkspace<Sweeps> kept(s, run, goes_by_all());
-        int const count = static_cast<int>(run.count);
-        Segment segment;
-        if (follows()) {
-            RunWithLoads<Leaf> const loaded = with_loads(run);
-            segment = climb_revolutes<double>(
-                count, FollowedBodies<Leaf, RunWorkspace<Sweeps>>(loaded, goes_by_all(), kept),
-                [&](int i) { return loaded.torque_about(i); }, kept);
-        } else {
-            auto const body = [&](int i) { return s.leaf.revolute(bodies.loads, run.body + i); };
-            segment = climb_revolutes<double>(
-                count, BodiesOfRun<double, decltype(body)>(body), [](int) { return Undriven{}; },
-                kept);
-        }
-        s.note(kept.lost());
-        return segment;
-    }
-    /// Outward pass of a run on revolute joints. `first` is the force at its first joint, `next`
-    /// that at the joint after it.
-    CATENA_HD_IN_PLACE void descend(Run const& run, Directions const& first,
-                                    Directions const& next) const {
-        RunWorkspace<Sweeps> const kept(s, run, goes_by_all());
-        typename RunWithLoads<Leaf>::PassedOn passed{next};
-        Directions& outboard = passed.force;
-        descend_revolutes<double>(
-            static_cast<int>(run.count), goes_by_all(), [&](int i) { return frame(run, kept, i); },
-            kept, first, next,
-            [&](int i, RevoluteFrame<double> const& frame, BodyAcceleration<double> const& a) {
-                std::int64_t const k = run.body + i;
-                accelerate(run, i, frame, a);
-                if (!out.joint_force) return;
-                if (i == 0)
-                    outboard = first;
-                else if (follows())
-                    with_loads(run).pass_on(i, frame, a, kept, passed);
-                else
-                    outboard = inboard_force(s.leaf.revolute(bodies.loads, k), a, outboard);
-                write_directions<K>(out.joint_force, k, outboard);
-            },
-            [](int, BodyAcceleration<double>&) {},
-            [&](int i, double of_revolute) { joint_acceleration(run, i, of_revolute); });
-    }
-    /// True if velocities within runs are computed along the run (RevoluteLoads).
-    CATENA_HD bool follows() const { return bodies.loads.revolutes.given; }
-    /// Returns the run together with its loads.
-    CATENA_HD RunWithLoads<Leaf> with_loads(Run const& run) const {
-        return {s.leaf, bodies.loads, run};
-    }
-    // Returns the kinematics of body i for the outward pass.
-    CATENA_HD RevoluteFrame<double> frame(Run const& run, RunWorkspace<Sweeps> const& kept,
-                                          int i) const {
-        return follows() ? with_loads(run).frame(i, kept)
-                         : s.leaf.revolute_frame(bodies.loads, run.body + i);
-    }
-    /// True if results of every body of a run are requested.
-    CATENA_HD bool goes_by_all() const { return out.by_all_bodies(); }
-    /// Writes the requested results of body i of a run on revolute joints. `a` is its acceleration
-    /// in its own axes.
-    CATENA_HD void accelerate(Run const& run, int i, RevoluteFrame<double> const& frame,
-                              BodyAcceleration<double> const& a) const {
-        std::int64_t const k = run.body + i;
-        if (out.revolute_acceleration.origin) {
-            bool const begins = i == 0, ends = i == static_cast<int>(run.count) - 1;
-            if (begins) out.revolute_acceleration.at(k, 0) = about_inboard_revolute(frame, a);
-            if (ends) out.revolute_acceleration.at(k + 1, 1) = about_outboard_revolute(frame, a);
-            if (!(begins && begins_chain(s.leaf.group(), k)) &&
-                !(ends && comes_before_one(s.leaf.group(), k)))
-                return;
-        }
-        if (!out.acceleration.origin) return;
-        write(out.alpha, k, a.alpha);
-        write(out.acceleration, k, a.a);
-    }
-    /// Writes the joint acceleration of the revolute joint inboard of body i.
-    CATENA_HD void joint_acceleration(Run const& run, int i, double of_revolute) const {
-        if (out.revolute_acceleration.origin)
-            out.revolute_acceleration.at(run.body + i, 0) = of_revolute;
-    }
+    /// Returns a run as one that may be computed by articulated-body inertias.
+    CATENA_HD RevoluteRun<Leaf> whole(Run const& run) const { return {s, bodies.loads, out, run}; }
 
     /// Reads the bodies [begin, end) of one part.
     template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
@@ -380,24 +288,6 @@ struct FusedSweep {
         s.matrices.store(slot, segment.matrix);
         s.biases.store(slot, segment.bias);
     }
-    /// Stores row `i` of a segment. The numbers lie where store() would put them.
-    CATENA_HD void store_row(std::int64_t slot, int i, SegmentRow<double, K> const& row) const {
-        constexpr int at_z22 = Symmetric<double, K>::size, at_z12 = 2 * at_z22;
-        using Matrices = SegmentMatrix<double, K>;
-        static_assert(offsetof(Matrices, z22) == at_z22 * sizeof(double) &&
-                      offsetof(Matrices, z12) == at_z12 * sizeof(double));
-        int const begin = i * (i + 1) / 2;
-        CATENA_UNROLL
-        for (int j = 0; j < K; ++j) {
-            if (j <= i) {
-                s.matrices.number(slot, begin + j) = row.z11[j];
-                s.matrices.number(slot, at_z22 + begin + j) = row.z22[j];
-            }
-            s.matrices.number(slot, at_z12 + i * K + j) = row.z12[j];
-        }
-        s.biases.number(slot, i) = row.b1;
-        s.biases.number(slot, K + i) = row.b2;
-    }
     /// Closes a chain at its root: computes the forces at its two ends.
     CATENA_HD void close(Root const& root, Segment const& floating) const {
         Segment const held = root.tip == TipTo::ground
@@ -437,95 +327,7 @@ struct FusedSweep {
     CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first,
                                  Directions next) const {
         PassagesHere passages;
-        down<unroll && !in_loops>(run, p, part, first, next, passages);
-    }
-    /// Storage of a part's passages in registers.
-    struct PassagesHere {
-        /// Number of passages that have room; the last joint's passage is apart if parts are
-        /// processed in rolled loops.
-        static constexpr int most = part_length - (in_loops ? 2 : 1);
-        // Some callers leave the last element unused, which compilers do not detect.
-        Passage passage[part_length - 1] = {};
-        CATENA_HD void put(int i, Passage const& passed) { passage[i] = passed; }
-        CATENA_HD Passage const& get(int i) const { return passage[i]; }
-    };
-    /// Outward pass of part `p`. `factors` must not fail.
-    ///
-    /// `passages` stores the recursion of the part's joints: put(i, Passage) and get(i), i <
-    /// `most`. The last joint's passage is kept apart if there is no room for it. If `passages` has
-    /// `keeps_turnings`, it also has keep(i, Bodies::Turning) and turning(i), i < part_length.
-    template <bool unroll, class Passages, class Factorizer = dca::Factorizer>
-    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first,
-                                 Directions next, Passages&& passages,
-                                 Factorizer const& factors = {}) const {
-        static_assert(!Factorizer::may_fail);
-        constexpr bool unrolled_here = unroll || unrolled<K>,
-                       last_apart = std::remove_reference_t<Passages>::most < part_length - 1;
-        std::int64_t const k = begin_of(run, p);
-        int const last = static_cast<int>(end_of(run, p) - k) - 1;
-        Directions at_last = first;
-        Segment const begins = segment_of(body_of<Passages>(part, 0), 0, passages, factors);
-        Symmetric<double, K> z22 = begins.matrix.z22;
-        Directions b2 = begins.bias.b2 + transposed_times(begins.matrix.z12, first);
-        each_body<unrolled_here>(1, last + 1, [&](int i) {
-            Body const body = body_of<Passages>(part, i);
-            Segment const segment = segment_of(body, i, passages, factors);
-            Passage const passed =
-                eliminate(z22, b2, segment.matrix, segment.bias, body.restricted, factors);
-            if (last_apart && i == last)
-                at_last = force(passed, next);
-            else
-                passages.put(i - 1, passed);
-        });
-        each_body_back<unrolled_here>(0, last + 1, [&](int i) {
-            Directions const at_i = i == 0                    ? first
-                                    : last_apart && i == last ? at_last
-                                                              : force(passages.get(i - 1), next);
-            if constexpr (turnings_kept<Passages>)
-                bodies.accelerate(bodies.body(part, i, ReadLast{}), passages.turning(i), at_i, next,
-                                  out);
-            else
-                bodies.accelerate(part, i, at_i, next, out, factors);
-            store_forces(s.leaf.group(), out, k + i, at_i, next);
-            next = at_i;
-        });
-    }
-
-    /// Outward pass from data that the inward pass kept: calls action(i, inboard force, outboard
-    /// force) from the last body to the first.
-    template <class Kept, class Action>
-    CATENA_HD_IN_PLACE void forces(int count, Kept&& kept, Directions const& first, Directions next,
-                                   Action const& action) const {
-        Directions b2{};
-        each_body<unrolled<K>>(0, count, [&](int i) {
-            Passed const joint = kept.template get<Passed>(i);
-            if (i > 0)
-                kept.put(i, pass(b2, joint));
-            else
-                b2 = joint.bias.b2 + transposed_times(joint.outboard, first);
-        });
-        each_body_back<unrolled<K>>(0, count, [&](int i) {
-            Directions const at_i = i > 0 ? force(kept.template get<Passage>(i), next) : first;
-            action(i, at_i, next);
-            next = at_i;
-        });
-    }
-    /// Outward pass as forces(), where kept.gain(i) is known for every joint but the first.
-    /// put_offset(i) and offset(i) store the offsets.
-    template <class Kept, class Action>
-    CATENA_HD_IN_PLACE void forces_by_gains(int count, Kept&& kept, Directions const& first,
-                                            Directions next, Action const& action) const {
-        Passed const begins = kept.template get<Passed>(0);
-        Directions b2 = begins.bias.b2 + transposed_times(begins.outboard, first);
-        each_body<unrolled<K>>(1, count, [&](int i) {
-            kept.put_offset(i, pass_bias(b2, kept.template get<Passed>(i)));
-        });
-        each_body_back<unrolled<K>>(0, count, [&](int i) {
-            Directions const at_i =
-                i > 0 ? force(Passage{kept.gain(i), kept.offset(i)}, next) : first;
-            action(i, at_i, next);
-            next = at_i;
-        });
+        descend_part<unroll && !in_loops>(*this, run, p, part, first, next, passages);
     }
     /// Writes the results of body `k` from the forces at its joints and the intermediate results of
     /// its segment.
@@ -557,29 +359,6 @@ struct FusedSweep {
             if (!found.none()) return first_force(at, floating, dca::Factorizer{}, factor);
         s.note(found);
         return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
-    }
-    // True if `Passages` stores the intermediate results of each body.
-    template <class Passages>
-    static constexpr bool turnings_kept =
-        requires { requires std::remove_reference_t<Passages>::keeps_turnings; };
-    template <class Passages>
-    CATENA_HD_IN_PLACE Body body_of(Part const& part, int i) const {
-        if constexpr (turnings_kept<Passages>)
-            return bodies.body(part, i, ReadFirst{});
-        else
-            return bodies.body(part, i);
-    }
-    template <class Passages, class Factorizer>
-    CATENA_HD_IN_PLACE Segment segment_of(Body const& body, [[maybe_unused]] int i,
-                                          [[maybe_unused]] Passages& passages,
-                                          Factorizer const& factors) const {
-        if constexpr (turnings_kept<Passages>) {
-            auto const turning = bodies.turning(body, factors);
-            passages.keep(i, turning);
-            return bodies.segment(body, turning);
-        } else {
-            return bodies.segment(body, factors);
-        }
     }
     /// Discards what the outward pass would need, where it computes it again.
     struct Forgotten {

@@ -19,13 +19,13 @@
 //
 // A sweep that `supports_short_chains` serves short chains (cuda/short/short_chain.cuh,
 // cuda/sweeps/group_lanes.cuh). Its bodies are read one by one (body_at). It has join_bodies() or
-// join_bodies_at_once(), joined_at_once(), first_force(), forces() or forces_by_gains(), and
-// accelerate() or accelerate_turned(). Its joints, forces and slots are not read afterwards, so
-// that not all of them are written.
+// join_bodies_at_once(), joined_at_once(), first_force(), and accelerate() or accelerate_turned();
+// part_descent.hpp has the outward pass of its parts. Its joints, forces and slots are not read
+// afterwards, so that not all of them are written.
 //
 // A sweep with matrices() and biases() may leave stages with runs to these two, one after the other
 // (cuda/sweeps/stage_walk.cuh). A sweep whose members accept `factors` has joined(..., factors),
-// close_free(), down(..., passages, factors) and PassagesHere, which other storage may replace
+// close_free(), and PassagesHere for descend_part(), which other storage may replace
 // (cuda/sweeps/run_parts.cuh).
 #pragma once
 
@@ -316,8 +316,8 @@ struct BiasSweep {
     }
 };
 
-/// A sweep that computes some runs as a whole, those for which takes(run) is true. climb(run)
-/// returns their segment, descend(run, first, next) is their outward pass.
+/// A sweep that computes runs on revolute joints as a whole (RevoluteRun): whole(run) has their
+/// passes.
 template <class Sweep>
 concept takes_whole_runs = requires { requires Sweep::takes_whole_runs; };
 
@@ -337,7 +337,8 @@ CATENA_HD void climb_parts(Sweep const& sweep, Run const& run, Part const& part,
 template <class Sweep>
 CATENA_HD void climb_run(Sweep const& sweep, Run const& run) {
     if constexpr (takes_whole_runs<Sweep>)
-        if (sweep.takes(run)) return sweep.store(run.slot, sweep.climb(run));
+        if (auto const whole = sweep.whole(run); whole.is_on_revolutes())
+            return sweep.store(run.slot, whole.climb());
     climb_parts(
         sweep, run,
         [&](int p) { return sweep.part(run, p, sweep.read(begin_of(run, p), end_of(run, p))); },
@@ -368,7 +369,8 @@ CATENA_HD void descend_run(Sweep const& sweep, Run const& run) {
     auto const first = sweep.s.forces.load(run.body);
     auto next = sweep.s.forces.load(run.next);
     if constexpr (takes_whole_runs<Sweep>)
-        if (sweep.takes(run)) return sweep.descend(run, first, next);
+        if (auto const whole = sweep.whole(run); whole.is_on_revolutes())
+            return whole.descend(first, next);
     for (int p = parts_of(run) - 1; p >= 0; --p) {
         auto const at_begin =
             p == 0 ? first : sweep.force(sweep.node(begin_of(run, p)), first, next);

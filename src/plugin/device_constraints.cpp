@@ -42,13 +42,11 @@ class Reordered final : public OpenMM::ComputeContext::ReorderListener {
     std::shared_ptr<bool> note_;
 };
 
-class OnDevice final : public DeviceConstraints {
+/// Arrays and kernels that project velocities and close constraints, block by block.
+class DeviceSweeps {
   public:
-    /// `on_host`: null if OpenMM knows the constraints.
-    OnDevice(OpenMM::ComputeContext& gpu, ConstraintChains const& chains,
-             std::shared_ptr<ContextConstraints> on_host)
+    DeviceSweeps(OpenMM::ComputeContext& gpu, ConstraintChains const& chains)
         : gpu_(gpu),
-          on_host_(std::move(on_host)),
           is_double_(gpu.getUseDoublePrecision() || gpu.getUseMixedPrecision()),
           beads_(static_cast<int>(chains.particle.size())),
           blocks_((beads_ + run * width - 1) / (run * width)),
@@ -75,25 +73,49 @@ class OnDevice final : public DeviceConstraints {
         compile();
     }
 
-    void before_step(double step, bool project) override {
-        OpenMM::ContextSelector const selected(gpu_);
-        find_places();
-        directions_->execute(beads_ + 1);
-        if (project) sweep(true, step, -1);
+    /// True if the GPU keeps the numbers in double precision.
+    bool is_double() const { return is_double_; }
+    OpenMM::ComputeContext& gpu() const { return gpu_; }
+    /// Looks up where OpenMM keeps the beads, if that has changed.
+    void find_places() {
+        if (!*reordered_) return;
+        *reordered_ = false;
+        std::vector<int> const& particle_at = gpu_.getAtomIndex();
+        std::vector<int> place_of(particle_at.size());
+        for (std::size_t i = 0; i < particle_at.size(); ++i)
+            place_of[std::size_t(particle_at[i])] = static_cast<int>(i);
+        std::vector<int> places;
+        places.reserve(particle_.size());
+        for (std::size_t const particle : particle_) places.push_back(place_of[particle]);
+        place_->upload(places);
     }
-    void after_step(double step, double tolerance) override {
-        OpenMM::ContextSelector const selected(gpu_);
-        find_places();
-        for (int s = 0; s < sweeps_; ++s) sweep(false, step, s);
-        if (++unseen_ >= seen_) look(step, tolerance);
+    /// Keeps the directions of the constraints at the present positions.
+    void find_directions() { directions_->execute(beads_ + 1); }
+    /// Projects velocities, or moves beads, over `step` (ps). Number `number` of a step's sweeps
+    /// leaves its error in the history; -1: none.
+    void sweep(bool project, double step, int number) {
+        int const projecting = project ? 1 : 0;
+        for (auto const& kernel : {assemble_, move_}) {
+            kernel->setArg(2, projecting);
+            set_number(kernel, 3, step);
+        }
+        solve_->setArg(1, number);
+        assemble_->execute(blocks_ * width, width);
+        solve_->execute(width, width);
+        move_->execute(blocks_ * width, width);
     }
-    std::optional<double> shifted_kinetic_energy(double shift) override {
-        if (!on_host_ || shift == 0) return std::nullopt;
-        return on_host_->shifted_kinetic_energy(shift);
-    }
-    void note_change() override {
-        sweeps_ = std::max(sweeps_, first_sweeps);
-        seen_ = 1;
+    /// Returns the largest error before each of a step's sweeps since the last call.
+    std::vector<double> take_errors() {
+        std::vector<double> history;
+        if (is_double_) {
+            history_->download(history);
+        } else {
+            std::vector<float> single;
+            history_->download(single);
+            history.assign(single.begin(), single.end());
+        }
+        forget_errors();
+        return history;
     }
 
   private:
@@ -139,34 +161,50 @@ class OnDevice final : public DeviceConstraints {
         else
             kernel->setArg(argument, static_cast<float>(value));
     }
+    void forget_errors() { history_->upload(std::vector<double>(most_sweeps, 0.0), true); }
 
-    void sweep(bool project, double step, int number) {
-        int const projecting = project ? 1 : 0;
-        for (auto const& kernel : {assemble_, move_}) {
-            kernel->setArg(2, projecting);
-            set_number(kernel, 3, step);
-        }
-        solve_->setArg(1, number);
-        assemble_->execute(blocks_ * width, width);
-        solve_->execute(width, width);
-        move_->execute(blocks_ * width, width);
+    OpenMM::ComputeContext& gpu_;
+    bool is_double_;
+    int beads_, blocks_;
+    std::vector<std::size_t> particle_;
+    Array place_, lengths_, direction_, joint_, segments_, errors_, block_force_, history_;
+    OpenMM::ComputeKernel directions_, assemble_, solve_, move_;
+    std::shared_ptr<bool> reordered_ = std::make_shared<bool>(true);
+};
+
+/// Constraints that choose how many sweeps a step takes, and how often their errors are read.
+class OnDevice final : public DeviceConstraints {
+  public:
+    /// `on_host`: null if OpenMM knows the constraints.
+    OnDevice(OpenMM::ComputeContext& gpu, ConstraintChains const& chains,
+             std::shared_ptr<ContextConstraints> on_host)
+        : on_host_(std::move(on_host)), device_(gpu, chains) {}
+
+    void before_step(double step, bool project) override {
+        OpenMM::ContextSelector const selected(device_.gpu());
+        device_.find_places();
+        device_.find_directions();
+        if (project) device_.sweep(true, step, -1);
     }
-    /// Looks up where OpenMM keeps the beads, if that has changed.
-    void find_places() {
-        if (!*reordered_) return;
-        *reordered_ = false;
-        std::vector<int> const& particle_at = gpu_.getAtomIndex();
-        std::vector<int> place_of(particle_at.size());
-        for (std::size_t i = 0; i < particle_at.size(); ++i)
-            place_of[std::size_t(particle_at[i])] = static_cast<int>(i);
-        std::vector<int> places;
-        places.reserve(particle_.size());
-        for (std::size_t const particle : particle_) places.push_back(place_of[particle]);
-        place_->upload(places);
+    void after_step(double step, double tolerance) override {
+        OpenMM::ContextSelector const selected(device_.gpu());
+        device_.find_places();
+        close(step);
+        if (++unseen_ >= seen_) look(step, tolerance);
     }
-    void forget_errors() {
-        history_->upload(std::vector<double>(most_sweeps, 0.0), true);
-        unseen_ = 0;
+    std::optional<double> shifted_kinetic_energy(double shift) override {
+        if (!on_host_ || shift == 0) return std::nullopt;
+        return on_host_->shifted_kinetic_energy(shift);
+    }
+    void note_change() override {
+        sweeps_ = std::max(sweeps_, first_sweeps);
+        seen_ = 1;
+    }
+
+  private:
+    /// Performs the sweeps of a step.
+    void close(double step) {
+        for (int s = 0; s < sweeps_; ++s) device_.sweep(false, step, s);
     }
     /// Largest errors before the last sweep but one and before the last one, since the last look.
     struct Errors {
@@ -176,22 +214,16 @@ class OnDevice final : public DeviceConstraints {
         bool stays() const { return last > before / 2; }
     };
     Errors read() {
-        std::vector<double> history;
-        if (is_double_) {
-            history_->download(history);
-        } else {
-            std::vector<float> single;
-            history_->download(single);
-            history.assign(single.begin(), single.end());
-        }
-        forget_errors();
+        std::vector<double> const history = device_.take_errors();
+        unseen_ = 0;
         return {history[std::size_t(sweeps_ - 2)], history[std::size_t(sweeps_ - 1)]};
     }
     /// Reads the errors. Repeats the sweeps of a step that is looked at alone until it is closed.
     /// Chooses the number of sweeps.
     void look(double step, double tolerance) {
         // In single precision, coordinates of 1000 nm are rounded by 1e-4 of a length.
-        double const enough = is_double_ ? 1e-9 : 1e-6, rounding = is_double_ ? 1e-7 : 1e-3;
+        double const enough = device_.is_double() ? 1e-9 : 1e-6,
+                     rounding = device_.is_double() ? 1e-7 : 1e-3;
         int const unseen = unseen_;
         Errors errors = read();
         auto const closed = [&](double error) {
@@ -199,7 +231,7 @@ class OnDevice final : public DeviceConstraints {
         };
         for (int more = sweeps_; unseen == 1 && !closed(errors.after()) && more < most_sweeps;
              more += sweeps_) {
-            for (int s = 0; s < sweeps_; ++s) sweep(false, step, s);
+            close(step);
             errors = read();
         }
         if (!std::isfinite(errors.last)) throw ComputationError("positions are no longer finite");
@@ -219,14 +251,8 @@ class OnDevice final : public DeviceConstraints {
             steps == 1 ? "after a step" : fmt::format("in one of the last {} steps", steps)));
     }
 
-    OpenMM::ComputeContext& gpu_;
     std::shared_ptr<ContextConstraints> on_host_;
-    bool is_double_;
-    int beads_, blocks_;
-    std::vector<std::size_t> particle_;
-    Array place_, lengths_, direction_, joint_, segments_, errors_, block_force_, history_;
-    OpenMM::ComputeKernel directions_, assemble_, solve_, move_;
-    std::shared_ptr<bool> reordered_ = std::make_shared<bool>(true);
+    DeviceSweeps device_;
     int sweeps_ = first_sweeps;
     /// unseen_: steps since the last look at errors; seen_: steps until the next.
     int unseen_ = 0, seen_ = 1;

@@ -330,7 +330,7 @@ class StageSpace : public HostSpace {
         }
         template <class Sweep>
         static std::size_t numbers(kernels::DeviceStage const& stage, int of_threads) {
-            return static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage, of_threads));
+            return static_cast<std::size_t>(kernels::PlacesOfBlock<Sweep>::size(stage, of_threads));
         }
         template <class Sweep>
         void launch(void (*kernel)(kernels::DeviceStage, Sweep), dca::Stage const& stage,

@@ -151,7 +151,7 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
             eliminate_again(runs, p, first, next);
         empty(runs, p);
     }
-    /// Outward pass that eliminates the part again, as FusedSweep::down().
+    /// Outward pass that eliminates the part again, as descend_part().
     void eliminate_again(RunsInLanes const& runs, int p, Directions const& first, Directions next) {
         Elimination<Real, K> passed[part_length];
         Kept kept[part_length];
@@ -170,7 +170,7 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
         });
         back(kept, first, next, [&](int i) { return passed[i].gain * next + passed[i].offset; });
     }
-    /// Outward pass from data that the inward pass kept, as FusedSweep::forces().
+    /// Outward pass from data that the inward pass kept, as forces_within().
     void use_kept(RunsInLanes const& runs, std::int64_t item, int p, Directions const& first,
                   Directions next) {
         Elimination<Real, K> passed[part_length];
