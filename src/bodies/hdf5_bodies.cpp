@@ -297,8 +297,8 @@ class Hdf5Bodies {
         vectors("qd", bodies_.qd, [&](std::size_t k, Vec3& v) {
             refuse_unused("qd", k, v.data, rates_of_joint(bodies_.joint[k]));
         });
-        table_.vector("free_position", bodies_.free_position.data);
-        table_.vector("free_velocity", bodies_.free_velocity.data);
+        table_.vector("free_position", bodies_.free_base.position.data);
+        table_.vector("free_velocity", bodies_.free_base.velocity.data);
     }
     /// Number of coordinates of joint k; 0 for a free joint.
     int count(std::size_t k) const { return numbers_of(bodies_.joint[k]); }

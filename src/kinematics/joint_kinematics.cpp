@@ -15,8 +15,8 @@ JointState make_joint_state(ChainGroup const& group, Scene const& scene) {
             state.q.set(piece.local + i, {{q[0], q[1], q[2], q[3]}});
             state.qd.set(piece.local + i, b.qd[piece.body + i]);
         }
-        state.base_position.set(static_cast<std::int64_t>(p), b.free_position);
-        state.base_velocity.set(static_cast<std::int64_t>(p), b.free_velocity);
+        state.base_position.set(static_cast<std::int64_t>(p), b.free_base.position);
+        state.base_velocity.set(static_cast<std::int64_t>(p), b.free_base.velocity);
     }
     for (LocalDrive const& d : group.drives) {
         bool const two = has_two_coordinates(group.joint[d.body]);

@@ -35,7 +35,6 @@ LINES, MEMBERS = 250, 20
 LARGER = {
     "BeadDynamics": (454, 38),
     "BlockOfStage": (316, 9),
-    "BodyArrays": (49, 21),
     "CalvadosComponent": (29, 22),
     "ChainGroup": (146, 50),
     "ChainReader": (267, 8),
