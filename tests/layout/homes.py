@@ -46,7 +46,6 @@ LARGER = {
     "GpuPath": (124, 21),
     "H5mdWriter": (305, 11),
     "Hdf5Bodies": (284, 4),
-    "HostSpace": (254, 1),
     "JointKinematics": (209, 28),
     "JointLoads": (366, 21),
     "MpiCommunicator": (267, 11),
@@ -60,7 +59,6 @@ LARGER = {
     "Run": (274, 19),
     "SamplingRow": (40, 25),
     "ShortTeams": (347, 11),
-    "SpaceLevels": (216, 25),
     "TableCheck": (294, 11),
     "TreeSolver": (363, 27),
 }
