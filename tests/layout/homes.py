@@ -60,7 +60,6 @@ LARGER = {
     "SamplingRow": (40, 25),
     "ShortTeams": (347, 11),
     "TableCheck": (294, 11),
-    "TreeSolver": (363, 27),
 }
 HEAD = re.compile(r"\b(?:class|struct)\s+([A-Za-z_]\w*)(?:<[^;{}()]*>)?\s*(?:final\s*)?(?::[^;{}]*)?\{")
 NO_MEMBER = re.compile(r"(using|typedef|friend|static|template|enum|class|struct|union|constexpr|requires|virtual|explicit|CATENA_HD)\b")

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "clock.hpp"
 #include "dca/branched_leaf.hpp"
 #include "dca/contracts.hpp"
 #include "dca/host_space.hpp"
+#include "dca/solvers/sweep_watch.hpp"
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {
@@ -206,19 +206,18 @@ class BranchedSolver final : public ChainSolver {
     }
 
     void assemble_matrices(ConfigurationView const& configuration) override {
-        double const start = seconds_now();
+        SweepWatch const watch(space_, measured_, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
         for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
             space_of(phase).climb(tree_[at(phase)], MatrixSweep<BranchedLeaf>{sweeps_});
             if (phase > 0) each_fork(phase - 1, FoldMatrices{folds()});
         }
         ++report_.matrix_sweeps;
-        add_seconds(report_.matrix_seconds, start);
         if (Space::answers_at_once) check();
     }
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
-        double const start = seconds_now();
+        SweepWatch const watch(space_, measured_, report_.bias_seconds);
         sweeps_.leaf.set(out.joint_force);
         BiasSweep<BranchedLeaf> const sweep{sweeps_, loads, {{}, out.acceleration, {}, {}}};
         for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
@@ -230,7 +229,6 @@ class BranchedSolver final : public ChainSolver {
             space_of(phase).descend(tree_[at(phase)], sweep);
         }
         ++report_.bias_sweeps;
-        add_seconds(report_.bias_seconds, start);
     }
 
     std::vector<double> time_evaluations(ConfigurationView const& configuration,
@@ -362,12 +360,6 @@ class BranchedSolver final : public ChainSolver {
                 lists_.body.data(),
                 lists_.first_of_path.data(),
                 mass_.view()};
-    }
-    /// Adds the seconds since `start`. If the space does not wait for its work, it does so only
-    /// while measurement is on.
-    void add_seconds(double& seconds, double start) {
-        if (measured_) space_.wait();
-        if (measured_ || Space::answers_at_once) seconds += seconds_now() - start;
     }
 
     ChainGroup const& group_;
