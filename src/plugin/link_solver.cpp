@@ -8,7 +8,7 @@
 
 #include "dca/host_space.hpp"
 #include "dynamics/bead_chains.hpp"
-#include "dynamics/bead_dynamics.hpp"
+#include "dynamics/bead_store.hpp"
 #include "error.hpp"
 #include "mpi/communicator.hpp"
 
