@@ -28,10 +28,10 @@ class HostModel {
   public:
     explicit HostModel(ChainGroup const& group) : group_(group) {}
     GroupView view() const { return group_.view(); }
-    std::uint8_t const* restricted() const { return group_.restricted_of_joint.data(); }
+    std::uint8_t const* restricted() const { return group_.joints.restricted.data(); }
     /// Mass and inertia of bodies in joint coordinates, also where no sweep reads them.
-    ConstView<1> mass() const { return group_.mass.view(); }
-    ConstView<6> inertia() const { return group_.inertia.view(); }
+    ConstView<1> mass() const { return group_.bodies.mass.view(); }
+    ConstView<6> inertia() const { return group_.bodies.inertia.view(); }
 
   private:
     ChainGroup const& group_;

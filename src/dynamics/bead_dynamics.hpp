@@ -177,7 +177,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
             {{}, now.change.view(), now.joint_force.view(), of_tips(group(), now.tip_force)});
     }
     void evaluate_at_once() override {
-        if (beads_.group.has_tips() || !beads_.solver->at_once())
+        if (beads_.group.ends.has_tips() || !beads_.solver->at_once())
             return AbsoluteDynamics::evaluate_at_once();
         settle_forces();
         BeadStore<Space>& now = beads_.store;

@@ -26,20 +26,20 @@ class BeadConstants {
     BeadConstants(ChainGroup const& group, Scene const& scene, Executor const& on_host)
         : group_(group),
           links_(links_of(group)),
-          halves_(halves_over(group.length, on_host)),
+          halves_(halves_over(group.joints.length, on_host)),
           piece_(local_pieces(group, scene)),
           tip_(held_tips(group,
                          [&](std::int64_t k) {
                              return scene.chains[group.scene_chain(k)].beads.position.back();
                          })),
-          is_first_(group.is_first),
+          is_first_(group.ends.is_first),
           has_link_(links_),
-          inboard_(group.inboard),
+          inboard_(group.branching.inboard),
           pieces_(piece_),
           tips_(tip_),
-          mass_(group.mass),
-          inverse_mass_(group.inverse_mass),
-          length_(group.length),
+          mass_(group.bodies.mass),
+          inverse_mass_(group.bodies.inverse_mass),
+          length_(group.joints.length),
           half_over_length_(halves_) {}
     // Lists of a host's Space view the vectors of this object.
     BeadConstants(BeadConstants const&) = delete;
@@ -50,7 +50,7 @@ class BeadConstants {
     void show(BeadChainsIn<Fields>& c) const {
         if constexpr (Fields::has_crosslinks) {
             c.places.inboard_bead = inboard_.data();
-            c.places.crosslink = group_.crosslinks.data();
+            c.places.crosslink = group_.branching.crosslinks.data();
         }
         c.places.size = group_.size;
         c.places.is_first = is_first_.data();
@@ -106,11 +106,11 @@ struct BeadStore {
           momentum(of.size),
           change(of.size),
           direction(of.link_entries()),
-          tip_direction(of.has_tips() ? of.size : 0),
+          tip_direction(of.ends.has_tips() ? of.size : 0),
           bias(of.link_entries() + 1, of.directions),
           joint_force(of.link_entries() + 1, of.directions),
-          tip_bias(of.has_tips() ? of.size : 0, of.directions),
-          tip_force(of.has_tips() ? of.size : 0, of.directions) {}
+          tip_bias(of.ends.has_tips() ? of.size : 0, of.directions),
+          tip_force(of.ends.has_tips() ? of.size : 0, of.directions) {}
 
     /// Sets the views of the fields that loops over beads read and write.
     template <class Fields>
@@ -128,7 +128,8 @@ struct BeadStore {
     }
     /// Configuration for the solver by link directions.
     ConfigurationView directions() {
-        return {direction.view(), {}, group.has_tips() ? tip_direction.view() : View<3>{}, {}, {}};
+        return {
+            direction.view(), {}, group.ends.has_tips() ? tip_direction.view() : View<3>{}, {}, {}};
     }
 };
 

@@ -58,7 +58,7 @@ struct BeadsIn {
         return c;
     }
     std::int64_t tips() const { return std::ssize(constants.tips()); }
-    std::int64_t crosslinks() const { return std::ssize(group.crosslinks); }
+    std::int64_t crosslinks() const { return std::ssize(group.branching.crosslinks); }
 
     // Execution policy of a step.
 
@@ -73,7 +73,7 @@ struct BeadsIn {
     }
     template <class Action>
     void each_link(Action const& action) const {
-        space.for_each(group.size + (group.neighbour_outboard >= 0 ? 1 : 0), action);
+        space.for_each(group.size + (group.neighbours.outboard >= 0 ? 1 : 0), action);
     }
     template <class Action>
     void each_tip(Action const& action) const {

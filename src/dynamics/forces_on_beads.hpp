@@ -63,7 +63,7 @@ struct ForcesOnBeads {
         ChainGroup const& group = beads.group;
         auto const& position = beads.space.read(beads.store.position);
         PotentialEnergy energy = potential_of(given, group.size, [&](std::int64_t k) {
-            return terms::PlacedBody{k, group.mass.view().at(k, 0), position[k]};
+            return terms::PlacedBody{k, group.bodies.mass.view().at(k, 0), position[k]};
         });
         for (auto const& term : terms) term->set_energy(energy);
         return energy;

@@ -35,7 +35,6 @@ LINES, MEMBERS = 250, 20
 LARGER = {
     "BlockOfStage": (316, 9),
     "CalvadosComponent": (29, 22),
-    "ChainGroup": (146, 50),
     "ChainReader": (267, 8),
     "DeviceSpace": (347, 5),
     "DeviceTree": (292, 11),

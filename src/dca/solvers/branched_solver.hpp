@@ -180,12 +180,12 @@ class BranchedSolver final : public ChainSolver {
     /// the solver.
     BranchedSolver(ChainGroup const& group, Space const& space, Communicator const& communicator)
         : group_(group),
-          branches_(group.branches),
+          branches_(group.branching.paths),
           space_(space),
           alone_(alone(space)),
           communicator_(communicator),
           model_(group),
-          mass_(group.mass),
+          mass_(group.bodies.mass),
           places_(group),
           lists_(branches_, places_),
           forks_(branches_.forks.size(), static_cast<std::size_t>(side_paths())),
@@ -274,14 +274,14 @@ class BranchedSolver final : public ChainSolver {
         explicit Places(ChainGroup const& group)
             : fork(at(group.size), -1),
               ends(at(group.size), 0),
-              restricted(at(group.branches.joints), 0) {
-            Branches const& b = group.branches;
+              restricted(at(group.branching.paths.joints), 0) {
+            Branches const& b = group.branching.paths;
             for (std::size_t f = 0; f < b.forks.size(); ++f)
                 fork[at(b.forks[f].place)] = static_cast<std::int32_t>(f);
             for (std::int64_t path = 1; path <= b.paths(); ++path)
                 ends[at(b.first_of_path[at(path)] - 1)] = 1;
             for (std::int64_t place = 0; place < group.size; ++place)
-                restricted[at(place)] = group.restricted_of_joint[at(b.body[at(place)])];
+                restricted[at(place)] = group.joints.restricted[at(b.body[at(place)])];
         }
         std::vector<std::int32_t> fork;
         std::vector<std::uint8_t> ends, restricted;

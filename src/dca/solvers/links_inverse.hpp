@@ -37,8 +37,8 @@ class LinksInverse {
             return inverse != 0 ? 1 / inverse : 1.0;
         };
         space.for_each(group.size, [&](std::int64_t k) { out.pivot.at(k, 0) = pivot(k); });
-        for (std::size_t i = 0; i < group.tips.size(); ++i)
-            out.tip_pivot.at(group.tips[i].body, 0) =
+        for (std::size_t i = 0; i < group.ends.tips.size(); ++i)
+            out.tip_pivot.at(group.ends.tips[i].body, 0) =
                 pivot(schedule.first_tip() + static_cast<std::int64_t>(i));
     }
 

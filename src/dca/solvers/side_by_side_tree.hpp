@@ -53,7 +53,7 @@ class SideBySideTree {
     /// other, and the roots.
     void lay_out_rest(ChainGroup const& group) {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
-            rest_.emplace_back(runs, levels, roots, group.schedule.slots, group.restricted_of_joint,
+            rest_.emplace_back(runs, levels, roots, group.schedule.slots, group.joints.restricted,
                                SweepsOf<Leaf>::Sweeps::in_stage);
         };
         add(aside_.other_runs(), no_levels_, no_roots_);

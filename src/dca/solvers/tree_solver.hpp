@@ -42,14 +42,14 @@ class TreeSolver final : public ChainSolver {
           communicator_(communicator),
           store_(group, space, space.model(group)),
           tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots,
-                group.restricted_of_joint, Sweeps::in_stage),
+                group.joints.restricted, Sweeps::in_stage),
           top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots,
-               group.restricted_of_joint, Sweeps::in_stage),
+               group.joints.restricted, Sweeps::in_stage),
           exchange_(schedule_, space, communicator, at_once()) {
         if constexpr (takes_runs_whole)
             if (at_once())
                 whole_runs_.emplace(schedule_.runs, schedule_.levels, schedule_.roots,
-                                    schedule_.slots, group.restricted_of_joint,
+                                    schedule_.slots, group.joints.restricted,
                                     Sweeps::in_stage_of_whole_runs);
         if constexpr (has_lanes) {
             aside_.emplace(group, store_.model().view(), space.simd());
@@ -229,7 +229,7 @@ class TreeSolver final : public ChainSolver {
             space_.descend(tree, sweep);
         }
         // The neighbour rank needs the force of the joint between the two ranks' bodies.
-        if (out.joint_force && group_.neighbour_outboard >= 0)
+        if (out.joint_force && group_.neighbours.outboard >= 0)
             space_.for_each(1, ForceOfNextRank<Sweeps>{sweeps(), out.joint_force, schedule_.halo,
                                                        schedule_.bodies});
     }
