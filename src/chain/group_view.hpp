@@ -7,7 +7,7 @@
 
 namespace catena {
 
-/// Non-owning view of the arrays of a ChainGroup, with the same names and units.
+/// Non-owning view of the arrays of a ChainGroup that sweeps read, with the same names and units.
 struct GroupView {
     std::int64_t size = 0;
     std::uint8_t const *is_first = nullptr, *is_last = nullptr;  // first and last bodies of chains

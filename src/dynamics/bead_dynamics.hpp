@@ -6,9 +6,9 @@
 
 #include "dca/solvers/tree_solver.hpp"
 #include "dynamics/absolute_dynamics.hpp"
+#include "dynamics/bead_force_array.hpp"
 #include "dynamics/beads_in.hpp"
 #include "dynamics/closing.hpp"
-#include "dynamics/forces_on_beads.hpp"
 
 namespace catena {
 
@@ -265,7 +265,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
 
     Beads beads_;
-    ForcesOnBeads<Space, Fields> forces_;
+    BeadForceArray<Space, Fields> forces_;
     typename Space::template Mirror<3> position_mirror_, observed_position_mirror_,
         observed_mirror_;
     /// DeviceParticles::order of the OpenMM particles to which the last step already wrote the

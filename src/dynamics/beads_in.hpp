@@ -17,7 +17,7 @@ void place_beads(ChainGroup const&, Scene const&, View<3> position, View<3> velo
 
 /// Beads of a group in a Space, with their solver. It is an execution policy of a step
 /// (bead_step.hpp): one loop over all chains after the other. All members are public because nvcc
-/// accepts no loop in a private one.
+/// accepts kernels in public members only.
 template <class Space, class Fields>
 struct BeadsIn {
     using Chains = BeadChainsIn<Fields>;

@@ -9,7 +9,7 @@
 #include "dca/branched_leaf.hpp"
 #include "dca/contracts.hpp"
 #include "dca/host_space.hpp"
-#include "dca/solvers/sweep_watch.hpp"
+#include "dca/solvers/sweep_timer.hpp"
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {
@@ -206,7 +206,7 @@ class BranchedSolver final : public ChainSolver {
     }
 
     void assemble_matrices(ConfigurationView const& configuration) override {
-        SweepWatch const watch(space_, measured_, report_.matrix_seconds);
+        SweepTimer const timer(space_, measured_, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
         for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
             space_of(phase).climb(tree_[at(phase)], MatrixSweep<BranchedLeaf>{sweeps_});
@@ -217,7 +217,7 @@ class BranchedSolver final : public ChainSolver {
     }
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
-        SweepWatch const watch(space_, measured_, report_.bias_seconds);
+        SweepTimer const timer(space_, measured_, report_.bias_seconds);
         sweeps_.leaf.set(out.joint_force);
         BiasSweep<BranchedLeaf> const sweep{sweeps_, loads, {{}, out.acceleration, {}, {}}};
         for (std::int64_t phase = branches_.phases(); phase-- > 0;) {

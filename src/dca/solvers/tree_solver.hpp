@@ -13,7 +13,7 @@
 #include "dca/solvers/links_inverse.hpp"
 #include "dca/solvers/segment_exchange.hpp"
 #include "dca/solvers/side_by_side_tree.hpp"
-#include "dca/solvers/sweep_watch.hpp"
+#include "dca/solvers/sweep_timer.hpp"
 #include "dca/sweep_store.hpp"
 #include "dca/team_tree.hpp"
 
@@ -60,7 +60,7 @@ class TreeSolver final : public ChainSolver {
     /// Matrix sweep: own trees first, then the exchange of shared units, then the top of shared
     /// chains.
     void assemble_matrices(ConfigurationView const& configuration) override {
-        SweepWatch const watch(space_, measured_, report_.matrix_seconds);
+        SweepTimer const timer(space_, measured_, report_.matrix_seconds);
         sweeps().leaf.set(configuration);
         if (!assemble_by_teams()) {
             OfMatrices const sweep{sweeps()};
@@ -76,7 +76,7 @@ class TreeSolver final : public ChainSolver {
 
     /// Bias sweep with the matrices assembled last; may be repeated.
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
-        SweepWatch const watch(space_, measured_, report_.bias_seconds);
+        SweepTimer const timer(space_, measured_, report_.bias_seconds);
         up_and_down(tree_, OfBiases{sweeps(), loads, out}, exchange_.of_biases(sweeps()), out);
         ++report_.bias_sweeps;
     }
@@ -181,7 +181,7 @@ class TreeSolver final : public ChainSolver {
     /// One evaluation by the fused sweep.
     void evaluate(ConfigurationView const& configuration, LoadsView const& loads,
                   AccelerationsView const& out) {
-        SweepWatch const watch(space_, measured_, report_.matrix_seconds);
+        SweepTimer const timer(space_, measured_, report_.matrix_seconds);
         sweeps().leaf.set(configuration);
         if constexpr (Leaf::beads)
             sweep_at_once(

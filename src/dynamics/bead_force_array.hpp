@@ -1,4 +1,4 @@
-// Forces on chains of point beads of a group, in any Space.
+// Force array of chains of point beads of a group, in any Space.
 #pragma once
 
 #include <memory>
@@ -12,10 +12,10 @@
 
 namespace catena {
 
-/// The forces on a group's beads: those in the force array, and gravity and OpenMM's, which its
-/// first reader adds up. All members are public because nvcc accepts no loop in a private one.
+/// The force array of a group's beads, and the forces that its first reader adds to it. All members
+/// are public because nvcc accepts kernels in public members only.
 template <class Space, class Fields>
-struct ForcesOnBeads {
+struct BeadForceArray {
     BeadsIn<Space, Fields>& beads;
     BodyLoads given;
     /// Terms that act on single beads; only the host has any.
@@ -28,7 +28,7 @@ struct ForcesOnBeads {
     typename Space::template Mirror<3> mirror;
 
     /// The beads must outlive this object.
-    ForcesOnBeads(BeadsIn<Space, Fields>& of, Scene const& scene)
+    BeadForceArray(BeadsIn<Space, Fields>& of, Scene const& scene)
         : beads(of), given(make_body_loads(of.group, scene)) {}
 
     /// Sets the forces of gravity and of the terms at the last updated configuration. Collective.

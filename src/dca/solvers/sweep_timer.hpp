@@ -8,16 +8,16 @@ namespace catena::dca {
 /// Adds the seconds of its lifetime to a sweep's. If the space does not wait for its work, it does
 /// so only while measurement is on.
 template <class Space>
-class SweepWatch {
+class SweepTimer {
   public:
-    SweepWatch(Space const& space, bool measured, double& seconds)
+    SweepTimer(Space const& space, bool measured, double& seconds)
         : space_(space), measured_(measured), seconds_(seconds), start_(seconds_now()) {}
-    ~SweepWatch() {
+    ~SweepTimer() {
         if (measured_) space_.wait();
         if (measured_ || Space::answers_at_once) seconds_ += seconds_now() - start_;
     }
-    SweepWatch(SweepWatch const&) = delete;
-    SweepWatch& operator=(SweepWatch const&) = delete;
+    SweepTimer(SweepTimer const&) = delete;
+    SweepTimer& operator=(SweepTimer const&) = delete;
 
   private:
     Space const& space_;
