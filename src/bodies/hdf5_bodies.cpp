@@ -211,8 +211,8 @@ class Hdf5Bodies {
         datasets_.vectors("qd", bodies_.qd, [&](std::size_t k, Vec3& v) {
             datasets_.refuse_unused("qd", k, v.data, rates_of_joint(bodies_.joint[k]));
         });
-        table_.vector("free_position", bodies_.free_position.data);
-        table_.vector("free_velocity", bodies_.free_velocity.data);
+        table_.vector("free_position", bodies_.free_base.position.data);
+        table_.vector("free_velocity", bodies_.free_base.velocity.data);
     }
     /// Reads the datasets of force terms, which are all optional.
     void read_forces() {

@@ -41,21 +41,21 @@ class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public 
           piece_(local_pieces(group, scene)),
           reach_(group.linked ? 1.0 : reach_of_joints(group, communicator)),
           of_stiffness_(rotor_of_spring(scene.dynamics.integrator) * implicit_step * implicit_step),
-          implicit_(group.implicit_joint),
+          implicit_(group.joints.implicit),
           loads_(given_),
           beads_(group, space),
           pieces_(piece_),
-          is_first_(group.is_first),
-          is_last_(group.is_last),
-          joint_(group.joint),
-          jointed_tip_(group.jointed_tip),
-          mass_(group.mass),
-          inverse_mass_(group.inverse_mass),
-          length_(group.length),
-          inertia_(group.inertia),
-          r1_(group.r1),
-          r2_(group.r2),
-          joint_frame_(group.joint_rotation),
+          is_first_(group.ends.is_first),
+          is_last_(group.ends.is_last),
+          joint_(group.joints.type),
+          jointed_tip_(group.ends.jointed_tip),
+          mass_(group.bodies.mass),
+          inverse_mass_(group.bodies.inverse_mass),
+          length_(group.joints.length),
+          inertia_(group.bodies.inertia),
+          r1_(group.bodies.r1),
+          r2_(group.bodies.r2),
+          joint_frame_(group.joints.rotation),
           principal_axes_(principal_.axes),
           principal_moment_(principal_.moment),
           position_(group.size),
@@ -78,14 +78,14 @@ class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public 
           flown_(rotors()),
           compliance_(rotors()),
           direction_(group.linked ? group.size : 0),
-          tip_direction_(group.linked && group.has_tips() ? group.size : 0),
+          tip_direction_(group.linked && group.ends.has_tips() ? group.size : 0),
           bias_(group.size + 1, group.directions),
           joint_force_(group.size + 1, group.directions),
-          tip_bias_(group.has_tips() ? group.size : 0, group.directions),
-          tip_force_(group.has_tips() ? group.size : 0, group.directions),
+          tip_bias_(group.ends.has_tips() ? group.size : 0, group.directions),
+          tip_force_(group.ends.has_tips() ? group.size : 0, group.directions),
           tip_(start(scene)),
           tips_(tip_),
-          rings_(group.rings),
+          rings_(group.ends.rings),
           ring_ends_(group, space, communicator) {
         if (rotors() == 0) return;
         exchange_from_inboard(communicator_, group_, orientation_.view(), space_);
@@ -103,7 +103,7 @@ class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public 
         set_ends();
         space_.for_each(group_.size,
                         [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_directions(k); });
-        space_.for_each(std::ssize(group_.rings),
+        space_.for_each(std::ssize(group_.ends.rings),
                         [c = chains(), ring = rings_.data()] CATENA_LAMBDA(std::int64_t i) {
                             c.set_first_direction(ring[i], i);
                         });
@@ -136,7 +136,7 @@ class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public 
 
     // DeviceBeads: data exchange with OpenMM on the same GPU. On the host on_device() is null.
     DeviceBeads* on_device() override { return stream() ? this : nullptr; }
-    std::int64_t count() const override { return group_.carried_beads(); }
+    std::int64_t count() const override { return group_.carried.count(); }
     void* stream() const override {
         if constexpr (requires { space_.stream(); }) return space_.stream();
         return nullptr;
@@ -391,8 +391,8 @@ class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public 
         fill(space_, velocity_, at.velocity);
         fill(space_, omega_, at.omega);
         fill(space_, orientation_, at.orientation);
-        return held_tips(group_, [&](std::int64_t k) {
-            return at.position[k] + to_matrix(as_quaternion(at.orientation[k])) * group_.r2[k];
+        return held_tips(group_, [&, &r2 = group_.bodies.r2](std::int64_t k) {
+            return at.position[k] + to_matrix(as_quaternion(at.orientation[k])) * r2[k];
         });
     }
     ConfigurationView configuration() const {
@@ -402,7 +402,7 @@ class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public 
                     {}, rotors() > 0 ? ConstView<6>(compliance_.view()) : ConstView<6>{}};
         return {direction_.view(),
                 orientation_.view(),
-                group_.has_tips() ? ConstView<3>(tip_direction_.view()) : ConstView<3>{},
+                group_.ends.has_tips() ? ConstView<3>(tip_direction_.view()) : ConstView<3>{},
                 {},
                 {}};
     }
@@ -476,7 +476,7 @@ class RigidDynamics final : public AbsoluteDynamics, public DeviceBeads, public 
         return c;
     }
     /// Size of the rotors' arrays: one entry per body if any joint is implicit, else 0.
-    std::int64_t rotors() const { return std::ssize(group_.implicit_joint); }
+    std::int64_t rotors() const { return std::ssize(group_.joints.implicit); }
     /// Calls use() with the results of the last evaluation, copied to the host.
     template <class Use>
     auto with_solution(Use const& use) const {

@@ -58,11 +58,12 @@ struct CarriedBeadsView {
 /// Body of each of the group's carried beads.
 inline std::vector<std::int64_t> bodies_of_beads(ChainGroup const& group) {
     std::vector<std::int64_t> bodies;
-    bodies.reserve(static_cast<std::size_t>(group.carried_beads()));
-    for (std::size_t k = 0; k + 1 < group.bead_offset.size(); ++k)
-        bodies.insert(bodies.end(),
-                      static_cast<std::size_t>(group.bead_offset[k + 1] - group.bead_offset[k]),
-                      static_cast<std::int64_t>(k));
+    bodies.reserve(static_cast<std::size_t>(group.carried.count()));
+    for (std::size_t k = 0; k + 1 < group.carried.offset.size(); ++k)
+        bodies.insert(
+            bodies.end(),
+            static_cast<std::size_t>(group.carried.offset[k + 1] - group.carried.offset[k]),
+            static_cast<std::int64_t>(k));
     return bodies;
 }
 
@@ -73,15 +74,15 @@ class CarriedBeadsIn {
   public:
     /// The group must outlive this object.
     CarriedBeadsIn(ChainGroup const& group, Space const& space)
-        : any_(group.carried_beads() > 0),
-          in_scene_(group.carried_in_scene),
+        : any_(group.carried.count() > 0),
+          in_scene_(group.carried.in_scene),
           space_(space),
           bodies_(bodies_of_beads(group)),
-          offset_(group.bead_offset),
+          offset_(group.carried.offset),
           body_(bodies_),
-          place_(group.bead_place),
-          position_(group.carried_beads()),
-          force_(group.carried_beads()) {}
+          place_(group.carried.place),
+          position_(group.carried.count()),
+          force_(group.carried.count()) {}
 
     /// True if this rank has carried beads.
     bool any() const { return any_; }

@@ -45,11 +45,11 @@ struct MotionFields {
           omega(group.size),
           origin(group.size),
           velocity(group.size) {
-        if (!group.moving_meeting()) return;
+        if (!group.joints.moving_meeting()) return;
         r2 = typename Space::template FieldOf<3>(group.size);
         axes2 = typename Space::template FieldOf<6>(group.size);
-        fill(space, r2, group.r2);
-        fill(space, axes2, group.axes2);
+        fill(space, r2, group.bodies.r2);
+        fill(space, axes2, group.bodies.axes2);
     }
     MotionView view() {
         return {joint_turn.view(), orientation.view(), omega.view(), origin.view(),
@@ -86,12 +86,12 @@ class JointKinematics {
           slot_of_body_(run_slots(group)),
           model_(space.model(group)),
           bodies_(model_.view()),
-          joint_(group.joint),
+          joint_(group.joints.type),
           piece_(first_body_),
-          drive_(group.drives),
-          joint_rotation_(group.joint_rotation),
-          joint_translation_(group.joint_translation),
-          first_axis_(group.first_axis),
+          drive_(group.joints.drives),
+          joint_rotation_(group.joints.rotation),
+          joint_translation_(group.joints.translation),
+          first_axis_(group.joints.first_axis),
           tree_(group.schedule.runs, group.schedule.levels, group.schedule.roots,
                 group.schedule.slots),
           top_(no_runs_, group.schedule.top_levels, group.schedule.top_roots, group.schedule.slots),
@@ -103,7 +103,7 @@ class JointKinematics {
           omega_(group.size),
           translation_(group.size),
           velocity_(group.size),
-          next_meeting_(group.moving_meeting() ? 1 : 0),
+          next_meeting_(group.joints.moving_meeting() ? 1 : 0),
           shared_(group.schedule, dca::RecordNumbers<Motion>::width, space, communicator,
                   MeetingForNeighbour::numbers + LoadsForNeighbour::numbers),
           whole_(group.schedule.slots),
@@ -118,7 +118,7 @@ class JointKinematics {
                 bodies_.is_first,
                 bodies_.is_last,
                 group_.planar,
-                group_.has_screws,
+                group_.joints.has_screws,
                 bodies_.r1,
                 bodies_.axes1,
                 joint_rotation_.view(),
@@ -128,7 +128,7 @@ class JointKinematics {
                 piece_.data(),
                 std::ssize(first_body_),
                 drive_.data(),
-                std::ssize(group_.drives)};
+                std::ssize(group_.joints.drives)};
     }
     /// Constant properties of the bodies, shared with the solver of the same Space.
     typename Space::Model const& model() const { return model_; }
@@ -207,9 +207,9 @@ class JointKinematics {
     /// is empty unless meeting frames move and a neighbour shares the chain.
     MeetingForNeighbour shown_meeting(JointScan const& s) {
         View<9> const meeting = next_meeting_.view();
-        MeetingForNeighbour const shown{meeting, 0, group_.neighbour_inboard,
-                                        meeting, 1, group_.neighbour_outboard};
-        if (!group_.moving_meeting() || !shown) return MeetingForNeighbour::none();
+        MeetingForNeighbour const shown{meeting, 0, group_.neighbours.inboard,
+                                        meeting, 1, group_.neighbours.outboard};
+        if (!group_.joints.moving_meeting() || !shown) return MeetingForNeighbour::none();
         space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
         return shown;
     }

@@ -464,7 +464,7 @@ class ChainReader {
         if (chain.velocities == StartVelocities::given) return;
         std::fill(chain.beads.velocity.begin(), chain.beads.velocity.end(), Vec3::zero());
         std::fill(chain.bodies.qd.begin(), chain.bodies.qd.end(), Vec3::zero());
-        chain.bodies.free_velocity = Vec3::zero();
+        chain.bodies.free_base.velocity = Vec3::zero();
         std::fill(chain.linked.velocity.begin(), chain.linked.velocity.end(), Vec3::zero());
         std::fill(chain.linked.omega.begin(), chain.linked.omega.end(), Vec3::zero());
     }

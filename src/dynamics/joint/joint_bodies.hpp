@@ -47,7 +47,7 @@ class JointBodies {
           loads(group, g.given, space, solver.eliminates_revolute_joints(),
                 rotor_of_spring(g.scene.dynamics.integrator), g.implicit_step),
           solution(group, solver.eliminates_revolute_joints()),
-          zero(group.has_tips() ? group.size : 0),
+          zero(group.ends.has_tips() ? group.size : 0),
           pieces_(local_pieces(group, g.scene)),
           pieces(pieces_) {
         if constexpr (has_lanes)
@@ -160,7 +160,7 @@ class JointBodies {
         View<4> const end = c.outboard_end;
         space.exchange(
             communicator,
-            BodyExchange<4>{end, 0, group.neighbour_outboard, end, -1, group.neighbour_inboard},
+            BodyExchange<4>{end, 0, group.neighbours.outboard, end, -1, group.neighbours.inboard},
             [c, last = group.size - 1] CATENA_LAMBDA(std::int64_t) {
                 c.outboard_end.store(0, c.outboard_end_of(last));
             });

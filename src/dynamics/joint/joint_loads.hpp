@@ -1,6 +1,6 @@
 // Loads and velocity biases of bodies in joint coordinates at a configuration, in any Space.
 // Frames: W ground axes, B body axes, J joint frame, M meeting frame. The axes of a joint are the
-// columns of ChainGroup::axes1 in M.
+// columns of LocalBodies::axes1 in M.
 #pragma once
 
 #include "dynamics/body_loads.hpp"

@@ -73,7 +73,7 @@ void thermalise(JointBodies<Space>& bodies, Thermostat const& thermostat, std::u
                            seed = thermostat.seed, step] CATENA_LAMBDA(std::int64_t k) {
                               noisy.set_noise(k, piece_of(piece, pieces, k).body_of(k), seed, step);
                           });
-    if (group.has_tips()) bodies.tips.set_no_bias(bodies.motion.view());
+    if (group.ends.has_tips()) bodies.tips.set_no_bias(bodies.motion.view());
     bodies.solver.solve({bodies.loads.torque.view(),
                          force.view(),
                          {},

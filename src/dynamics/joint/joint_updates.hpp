@@ -17,8 +17,8 @@ template <class Space>
 bool follows_revolutes(JointBodies<Space> const& bodies) {
     if constexpr (JointBodies<Space>::has_lanes)
         if (bodies.space.simd() != SimdLevel::off && !rounds_as_vectors()) return false;
-    return bodies.loads.eliminated && bodies.group.drives.empty() && !bodies.loads.implicit &&
-           (bodies.lanes || !bodies.solver.has_runs_side_by_side());
+    return bodies.loads.eliminated && bodies.group.joints.drives.empty() &&
+           !bodies.loads.implicit && (bodies.lanes || !bodies.solver.has_runs_side_by_side());
 }
 
 /// Computes motion and loads of all bodies. `again`: keeps the forces on carried beads.
@@ -49,7 +49,7 @@ void update_all(JointBodies<Space>& bodies, bool again) {
     } else {
         kinematics.template sweep<positions>(c.scan, shown, set_motion);
     }
-    if (!group.has_tips()) return;
+    if (!group.ends.has_tips()) return;
     bodies.tips.set_ends(bodies.motion.view());
     bodies.tips.set_acceleration_bias(bodies.motion.view(), bodies.loads.given.gravity);
 }
@@ -107,7 +107,7 @@ void find_rotations(JointBodies<Space>& bodies) {
 template <class Space>
 void move(JointBodies<Space>& bodies) {
     bodies.motion.move(bodies.state.now.view());
-    if (bodies.group.has_tips()) bodies.tips.set_ends(bodies.motion.view());
+    if (bodies.group.ends.has_tips()) bodies.tips.set_ends(bodies.motion.view());
 }
 
 }  // namespace catena::joint_coordinates
