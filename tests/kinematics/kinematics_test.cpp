@@ -24,7 +24,7 @@ class MovedIn {
         kinematics_.evaluate(state_.view(), true, motion_.view());
     }
     ChainGroup const& group() const { return *groups_[0]; }
-    JointsView joints() const { return kinematics_.joints(); }
+    JointsView joints() const { return kinematics_.joints().view(); }
     StateView state() { return state_.view(); }
     /// Everything about a body.
     std::vector<double> of(std::int64_t k) const {

@@ -66,7 +66,7 @@ class JointBodies {
         if (loads.implicit) c.implicit = loads.implicit.view(state.start.view().qd);
         c.time = state.clock.now;
         c.directions = group.directions;
-        loads.show(c, motion.kinematics());
+        loads.show(c, motion.kinematics().joints());
         c.alpha = solution.alpha.view();
         c.acceleration = solution.acceleration.view();
         c.outboard_end = solution.outboard_end.view();
