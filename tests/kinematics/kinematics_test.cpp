@@ -170,8 +170,8 @@ class RevolutesIn {
                 state_.view().q.at(k, 0) += 0.3;
         }
         JointLoads loads;
-        loads.scan = kinematics_.scan(state_.view(), motion_.view());
-        loads.scan.motion.orients_first_alone = true;
+        loads.moved.scan = kinematics_.scan(state_.view(), motion_.view());
+        loads.moved.scan.motion.orients_first_alone = true;
         loads.in_run = {in_run_.data()};
         loads.left = {false, true, true};
         loads.given.gravity = {{1, 2, -9.81}};
@@ -179,8 +179,8 @@ class RevolutesIn {
         loads.inertia = inertia_.view();
         loads.torque = torque_.view();
         loads.bias = bias_.view();
-        loads.fixed_axes2 = group().axes2.view();
-        loads.fixed_r2 = group().r2.view();
+        loads.moved.fixed_axes2 = group().axes2.view();
+        loads.moved.fixed_r2 = group().r2.view();
         loads.joint_load = joint_load_.view();
         loads.given.torque = given_.view();
         loads.given.joint_loads = joint_loads;

@@ -48,7 +48,6 @@ LARGER = {
     "H5mdWriter": (305, 11),
     "Hdf5Bodies": (284, 4),
     "HostSpace": (254, 1),
-    "JointLoads": (366, 21),
     "MpiCommunicator": (267, 11),
     "OnDevice": (189, 22),
     "OpenMmForces": (60, 21),

@@ -117,8 +117,8 @@ struct JointLoadsIn {
     void show(JointLoads& c, JointsIn<Space> const& joints) {
         c.mass = joints.model().mass();
         c.inertia = joints.model().inertia();
-        c.fixed_r2 = joints.bodies().r2;
-        c.fixed_axes2 = joints.bodies().axes2;
+        c.moved.fixed_r2 = joints.bodies().r2;
+        c.moved.fixed_axes2 = joints.bodies().axes2;
         c.given = in_space.view();
         c.has_wrenches = has_wrenches;
         c.has_forces = has_forces;
