@@ -9,9 +9,9 @@
 #include "dca/host_space.hpp"
 #include "dynamics/absolute_dynamics.hpp"
 #include "dynamics/closing.hpp"
-#include "dynamics/rigid_chains.hpp"
-#include "dynamics/rigid_solution.hpp"
-#include "dynamics/rigid_start.hpp"
+#include "dynamics/rigid/rigid_chains.hpp"
+#include "dynamics/rigid/rigid_solution.hpp"
+#include "dynamics/rigid/rigid_start.hpp"
 
 namespace catena {
 

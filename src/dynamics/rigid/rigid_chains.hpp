@@ -8,7 +8,7 @@
 #include "dca/solver.hpp"
 #include "dynamics/body_loads.hpp"
 #include "dynamics/constrained_step.hpp"
-#include "dynamics/joint_rotors.hpp"
+#include "dynamics/rigid/joint_rotors.hpp"
 #include "joints/joint_models.hpp"
 #include "kinematics/carried_beads.hpp"
 #include "kinematics/link_geometry.hpp"

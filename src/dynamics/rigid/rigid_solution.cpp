@@ -1,7 +1,7 @@
 // Results, residual and potential energy of rigid chains.
-#include "dynamics/rigid_solution.hpp"
+#include "dynamics/rigid/rigid_solution.hpp"
 
-#include "dynamics/rigid_chains.hpp"
+#include "dynamics/rigid/rigid_chains.hpp"
 #include "joints/joint_models.hpp"
 
 namespace catena {
