@@ -54,8 +54,6 @@ LARGER = {
     "Planner": (267, 6),
     "RevoluteRunsSideBySide": (429, 0),
     "RevoluteTeam": (297, 10),
-    "RigidChains": (267, 41),
-    "RigidDynamics": (513, 60),
     "Run": (274, 19),
     "SamplingRow": (40, 25),
     "ShortTeams": (347, 11),
