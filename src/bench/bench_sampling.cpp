@@ -54,8 +54,8 @@ Json json_of(SamplingRow const& row, std::int64_t copies) {
             {"cosine", json_of(row.cosine, "1")},
             {"configurational_temperature", json_of(row.temperature, "K")},
             {"kinetic_temperature", json_of(row.kinetic, "K")},
-            {"system", json_of(row.system)},
-            {"diffusion_of_chains", json_of(row.diffusion, "nm^2/ns")},
+            {"system", json_of(row.together.means)},
+            {"diffusion_of_chains", json_of(row.together.diffusion, "nm^2/ns")},
             {"largest_link_error", row.link_error},
             {"copies_spacing_nm", row.distances.spacing},
             {"copies_apart_nm", row.distances.nearest},
@@ -153,19 +153,20 @@ std::string table_of(std::vector<SamplingRow> const& rows) {
 
 /// Returns the table of what describes all chains together; nothing if there is no such number.
 std::string system_table(std::vector<SamplingRow> const& rows) {
-    auto const full = std::find_if(rows.begin(), rows.end(),
-                                   [](SamplingRow const& row) { return !row.system.empty(); });
+    auto const full = std::find_if(rows.begin(), rows.end(), [](SamplingRow const& row) {
+        return !row.together.means.empty();
+    });
     if (full == rows.end()) return {};
     std::vector<std::string> heads{"links", "step fs"};
-    for (SystemMean const& each : full->system)
+    for (SystemMean const& each : full->together.means)
         heads.push_back(fmt::format("{}, {}", each.name, each.unit));
     heads.emplace_back("diffusion of chains, nm^2/ns");
     Table table(heads, {0});
     for (SamplingRow const& row : rows) {
-        if (row.system.empty()) continue;
+        if (row.together.means.empty()) continue;
         std::vector<std::string> cells{name_of(row.method), femtoseconds(row.step)};
-        for (SystemMean const& each : row.system) cells.push_back(text_of(each.mean, 4));
-        cells.push_back(text_of(row.diffusion, 3));
+        for (SystemMean const& each : row.together.means) cells.push_back(text_of(each.mean, 4));
+        cells.push_back(text_of(row.together.diffusion, 3));
         table.add(cells);
     }
     return table.text();

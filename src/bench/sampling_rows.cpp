@@ -237,8 +237,8 @@ class RowRun {
             kinetic *= 2 / (model.boltzmann() * static_cast<double>(dof));
         row_.kinetic = blocked_mean(found_.kinetic);
         for (auto const& [what, series] : found_.system)
-            row_.system.push_back({what.name, what.unit, blocked_mean(series)});
-        row_.diffusion = found_.diffusion(row_.time - row_.every);
+            row_.together.means.push_back({what.name, what.unit, blocked_mean(series)});
+        row_.together.diffusion = found_.diffusion(row_.time - row_.every);
     }
 
   private:

@@ -29,6 +29,15 @@ struct SystemMean {
 /// True if the number is an energy of a term.
 bool is_energy(SystemMean const&);
 
+/// What describes all chains of a row together.
+struct ChainsTogether {
+    /// Means; none for copies that never meet.
+    std::vector<SystemMean> means;
+    /// Displacement of the chains' centres of mass from the first sample to the last,
+    /// <|dx|^2> / (6 t), nm^2/ns, with the standard error over chains; NaN with one sample.
+    Blocked diffusion;
+};
+
 /// Wall time of the steps and samples of a row.
 struct SamplingTimes {
     /// Seconds per step, from the blocks between samples.
@@ -65,11 +74,7 @@ struct SamplingRow {
     std::vector<double> gyration_of_chains;
     /// Configurational (measure/chain_sample.hpp) and kinetic temperature, K.
     Blocked temperature, kinetic;
-    /// Means of what describes all chains together; none for copies that never meet.
-    std::vector<SystemMean> system;
-    /// Displacement of the chains' centres of mass from the first sample to the last,
-    /// <|dx|^2> / (6 t), nm^2/ns, with the standard error over chains; NaN with one sample.
-    Blocked diffusion;
+    ChainsTogether together;
     /// Largest relative error of a link.
     double link_error = 0;
     CopyDistances distances;

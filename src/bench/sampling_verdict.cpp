@@ -38,7 +38,7 @@ QuantityBias bias_of_gyration(SamplingRow const& row, SamplingRow const& smalles
 /// Returns the sum of the magnitudes of all energies of a row.
 double energy_scale(SamplingRow const& row) {
     double sum = 0;
-    for (SystemMean const& each : row.system)
+    for (SystemMean const& each : row.together.means)
         if (is_energy(each)) sum += std::abs(each.mean.mean);
     return sum;
 }
@@ -51,8 +51,9 @@ SamplingBias biases_of(SamplingRow const& row, SamplingRow const& smallest, doub
     bias.of = {bias_of_gyration(row, smallest),
                bias_of("T conf.", row.temperature, thermostat, temperature)};
     double const energies = energy_scale(smallest);
-    for (std::size_t i = 0; i < row.system.size() && i < smallest.system.size(); ++i) {
-        SystemMean const &mean = row.system[i], &reference = smallest.system[i];
+    for (std::size_t i = 0; i < row.together.means.size() && i < smallest.together.means.size();
+         ++i) {
+        SystemMean const &mean = row.together.means[i], &reference = smallest.together.means[i];
         bias.of.push_back(bias_of(mean.name, mean.mean, reference.mean,
                                   is_energy(mean) ? energies : std::abs(reference.mean.mean)));
     }

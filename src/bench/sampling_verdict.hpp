@@ -30,7 +30,7 @@ struct QuantityBias {
 /// the sum of the magnitudes of all energies. The bias of the configurational temperature is
 /// relative to that of the thermostat.
 struct SamplingBias {
-    /// The radius of gyration, the configurational temperature, then all of SamplingRow::system.
+    /// The radius of gyration, the configurational temperature, then all of SamplingRow::together.
     /// Biases of means are zero for the smallest step, which is the reference; all are NaN if a row
     /// is not VALID.
     std::vector<QuantityBias> of;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/rigid_start.hpp"
+#include "dynamics/rigid/rigid_start.hpp"
 #include "dynamics/stays_open.hpp"
 #include "error.hpp"
 #include "integrate/step_failure.hpp"

@@ -92,9 +92,9 @@ TEST(SamplingVerdict, RigidLinksAreWeighedAsSuch) {
 TEST(SamplingVerdict, WhatDescribesAllChainsIsJudgedToo) {
     auto const dense = [](double step, double hatch, double yukawa, double pairs) {
         SamplingRow r = row(rigid, step, 3, 300);
-        r.system = {{"hatch energy", "kJ/mol", {hatch, 0.004, 1, true}},
-                    {"yukawa energy", "kJ/mol", {yukawa, 0.004, 1, true}},
-                    {"pairs", "per bead", {pairs, 0.001, 1, true}}};
+        r.together.means = {{"hatch energy", "kJ/mol", {hatch, 0.004, 1, true}},
+                            {"yukawa energy", "kJ/mol", {yukawa, 0.004, 1, true}},
+                            {"pairs", "per bead", {pairs, 0.001, 1, true}}};
         return r;
     };
     std::vector<SamplingRow> const rows{

@@ -24,7 +24,7 @@ class MovedIn {
         kinematics_.evaluate(state_.view(), true, motion_.view());
     }
     ChainGroup const& group() const { return *groups_[0]; }
-    JointsView joints() const { return kinematics_.joints(); }
+    JointsView joints() const { return kinematics_.joints().view(); }
     StateView state() { return state_.view(); }
     /// Everything about a body.
     std::vector<double> of(std::int64_t k) const {
@@ -171,8 +171,8 @@ class RevolutesIn {
                 state_.view().q.at(k, 0) += 0.3;
         }
         JointLoads loads;
-        loads.scan = kinematics_.scan(state_.view(), motion_.view());
-        loads.scan.motion.orients_first_alone = true;
+        loads.moved.scan = kinematics_.scan(state_.view(), motion_.view());
+        loads.moved.scan.motion.orients_first_alone = true;
         loads.in_run = {in_run_.data()};
         loads.left = {false, true, true};
         loads.given.gravity = {{1, 2, -9.81}};
@@ -180,8 +180,8 @@ class RevolutesIn {
         loads.inertia = inertia_.view();
         loads.torque = torque_.view();
         loads.bias = bias_.view();
-        loads.fixed_axes2 = group().bodies.axes2.view();
-        loads.fixed_r2 = group().bodies.r2.view();
+        loads.moved.fixed_axes2 = group().bodies.axes2.view();
+        loads.moved.fixed_r2 = group().bodies.r2.view();
         loads.joint_load = joint_load_.view();
         loads.given.torque = given_.view();
         loads.given.joint_loads = joint_loads;

@@ -62,11 +62,11 @@ class JointBodies {
     /// Views of all arrays for loops over bodies.
     JointChains chains() {
         JointChains c;
-        c.scan = motion.scan(state.now.view());
+        c.moved.scan = motion.scan(state.now.view());
         if (loads.implicit) c.implicit = loads.implicit.view(state.start.view().qd);
-        c.time = state.clock.now;
+        c.moved.time = state.clock.now;
         c.directions = group.directions;
-        loads.show(c, motion.kinematics());
+        loads.show(c, motion.kinematics().joints());
         c.alpha = solution.alpha.view();
         c.acceleration = solution.acceleration.view();
         c.outboard_end = solution.outboard_end.view();
@@ -86,8 +86,8 @@ class JointBodies {
     /// Views with zero velocities and gravity, so that rates contain the last solution only.
     JointSteps at_rest() {
         JointSteps still = steps();
-        still.chains.scan.state.qd = zero.view();
-        still.chains.scan.motion.omega = zero.view();
+        still.chains.moved.scan.state.qd = zero.view();
+        still.chains.moved.scan.motion.omega = zero.view();
         still.chains.given.gravity = Vec3::zero();
         return still;
     }

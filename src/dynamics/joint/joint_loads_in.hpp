@@ -114,11 +114,11 @@ struct JointLoadsIn {
                                  : BodyExchange<4>::none();
     }
     /// Sets the views of the bodies and their loads.
-    void show(JointLoads& c, JointKinematics<Space> const& kinematics) {
-        c.mass = kinematics.model().mass();
-        c.inertia = kinematics.model().inertia();
-        c.fixed_r2 = kinematics.bodies().r2;
-        c.fixed_axes2 = kinematics.bodies().axes2;
+    void show(JointLoads& c, JointsIn<Space> const& joints) {
+        c.mass = joints.model().mass();
+        c.inertia = joints.model().inertia();
+        c.moved.fixed_r2 = joints.bodies().r2;
+        c.moved.fixed_axes2 = joints.bodies().axes2;
         c.given = in_space.view();
         c.has_wrenches = has_wrenches;
         c.has_forces = has_forces;

@@ -23,7 +23,7 @@ struct JointSolution {
     /// Fields of MotionView.
     ConstView<3> omega, velocity, moving_r2;
     ConstView<6> moving_axes2;
-    /// Fields of JointLoads. `force` has no origin if no body has a force.
+    /// Fields of JointChains. `force` has no origin if no body has a force.
     ConstView<3> torque, force, alpha, acceleration;
     /// Forces on carried beads, W.
     ConstView<3> bead_force;

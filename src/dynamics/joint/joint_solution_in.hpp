@@ -90,7 +90,7 @@ struct JointSolutionIn {
     MatricesHeld matrices = MatricesHeld::none;
     FieldOf<2> revolute_acceleration;
     FieldOf<3> alpha, acceleration;
-    /// JointLoads::outboard_end of the body before this rank's first one.
+    /// JointChains::outboard_end of the body before this rank's first one.
     FieldOf<4> outboard_end;
     typename Space::Directions joint_force, tip_force;
     std::optional<JointRefinement<Space>> refinement;

@@ -1,8 +1,9 @@
 // Results, residual and potential energy of rigid chains.
-#include "dynamics/rigid_solution.hpp"
+#include "dynamics/rigid/rigid_solution.hpp"
 
-#include "dynamics/rigid_chains.hpp"
+#include "dynamics/rigid/rigid_loads.hpp"
 #include "joints/joint_models.hpp"
+#include "kinematics/ring_ends.hpp"
 
 namespace catena {
 

@@ -1,5 +1,5 @@
 // Starting poses of rigid chains and the principal axes of their bodies.
-#include "dynamics/rigid_dynamics.hpp"
+#include "dynamics/rigid/rigid_dynamics.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
