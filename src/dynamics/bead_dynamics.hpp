@@ -77,7 +77,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
                              std::int64_t k) { shown.show(k, x.load(k)); });
     }
     void add_forces(DeviceParticles const& particles) override {
-        forces_.pending.particles = particles;
+        if (forces_.pending) forces_.pending->particles = particles;
     }
     ConstView<3> host_positions() override { return bead_positions(); }
 
@@ -226,11 +226,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
                 solver->carry(beads_.store.directions(), step.matrix_sweeps(), step.bias_sweeps(),
                               [&](dca::TreeSweeps<Leaf> const& sweeps) {
                                   return StepOfChains<Leaf>{sweeps, beads_.chains(), step,
-                                                            forces_.are_ahead, forces_.pending};
+                                                            forces_.pending.has_value(),
+                                                            forces_.pending.value_or(BeadForces{})};
                               });
             });
-            put_at_step_ = forces_.are_ahead && forces_.pending.particles.bead
-                               ? forces_.pending.particles.order
+            put_at_step_ = forces_.pending && forces_.pending->particles.bead
+                               ? forces_.pending->particles.order
                                : never;
             return true;
         }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,11 +21,10 @@ struct BeadForceArray {
     BodyLoads given;
     /// Terms that act on single beads; only the host has any.
     std::vector<std::unique_ptr<BeadTerm>> terms;
-    /// Forces that are not yet in the array, if `are_ahead`.
-    BeadForces pending;
-    bool are_ahead = false;
-    /// True if the host has a copy of the forces that it may have changed.
-    bool are_out = false;
+    /// Forces that are not yet in the array.
+    std::optional<BeadForces> pending;
+    /// The host's copy of the forces, which it may have changed.
+    std::optional<View<3>> shown;
     typename Space::template Mirror<3> mirror;
 
     /// The beads must outlive this object.
@@ -33,8 +33,7 @@ struct BeadForceArray {
 
     /// Sets the forces of gravity and of the terms at the last updated configuration. Collective.
     void set_simple() {
-        pending = {given.gravity, {}};
-        are_ahead = true;
+        pending = BeadForces{given.gravity, {}};
         if (terms.empty()) return;
         settle();
         for (auto const& term : terms)
@@ -42,19 +41,19 @@ struct BeadForceArray {
     }
     /// Sums the pending forces into the force array; every reader of that array calls it first.
     void settle() {
-        if (std::exchange(are_ahead, false))
-            beads.each_bead([c = beads.chains(), f = pending] CATENA_LAMBDA(std::int64_t k) {
+        if (auto const forces = std::exchange(pending, std::nullopt))
+            beads.each_bead([c = beads.chains(), f = *forces] CATENA_LAMBDA(std::int64_t k) {
                 c.take_forces(k, f);
             });
     }
     /// Returns the force array for the host, which may change it until take_back().
     View<3> show() {
         settle();
-        are_out = true;
-        return beads.space.pull(beads.store.force, mirror);
+        shown = beads.space.pull(beads.store.force, mirror);
+        return *shown;
     }
     void take_back() {
-        if (std::exchange(are_out, false)) beads.space.push(beads.store.force, mirror);
+        if (std::exchange(shown, std::nullopt)) beads.space.push(beads.store.force, mirror);
     }
     /// Potential energy at the current positions. Collective.
     PotentialEnergy potential() {

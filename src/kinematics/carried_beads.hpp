@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -99,15 +100,17 @@ class CarriedBeadsIn {
         return any_ ? space_.pull(position_, position_mirror_) : View<3>{};
     }
     View<3> bead_forces() {
-        forces_are_out_ = any_;
-        return any_ ? space_.pull(force_, force_mirror_) : View<3>{};
+        if (!any_) return {};
+        shown_ = space_.pull(force_, force_mirror_);
+        return *shown_;
     }
     void take_bead_forces() {
-        if (std::exchange(forces_are_out_, false)) space_.push(force_, force_mirror_);
+        if (std::exchange(shown_, std::nullopt)) space_.push(force_, force_mirror_);
     }
 
   private:
-    bool any_, in_scene_, forces_are_out_ = false;
+    bool any_, in_scene_;
+    std::optional<View<3>> shown_;  // the host's copy of the forces, which it may have changed
     Space space_;
     std::vector<std::int64_t> bodies_;  // On the host a List is a view.
     typename Space::template List<std::int64_t> offset_, body_;
