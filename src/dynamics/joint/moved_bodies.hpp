@@ -1,6 +1,6 @@
 // Bodies in joint coordinates with their motion, in any Space, as loads and rates read them.
 // Frames: W ground axes, B body axes, J joint frame, M meeting frame. The axes of a joint are the
-// columns of ChainGroup::axes1 in M.
+// columns of LocalBodies::axes1 in M.
 #pragma once
 
 #include "joints/joint_models.hpp"

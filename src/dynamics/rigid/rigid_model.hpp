@@ -24,7 +24,7 @@ struct RigidModel {
     ConstView<1> mass, inverse_mass, length;
     ConstView<6> inertia;
     ConstView<3> r1, r2;
-    ConstView<4> joint_frame;  // Quaternion of J in the inboard body (ChainGroup::joint_rotation).
+    ConstView<4> joint_frame;     // Quaternion of J in the inboard body (LocalJoints::rotation).
     ConstView<4> principal_axes;  // Quaternion of P in B.
     /// Principal moments of inertia; 0 for a bead.
     ConstView<3> principal_moment;
