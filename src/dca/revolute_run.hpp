@@ -19,7 +19,7 @@ struct RevoluteRun {
     Sweeps const& s;
     LoadsView const& loads;
     AccelerationsView const& out;
-    Run const& run;
+    Run run;
 
     /// True if the run has two bodies or more on revolute joints and no jointed tip. Others are
     /// eliminated part by part.
