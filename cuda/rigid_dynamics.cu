@@ -1,7 +1,7 @@
 // Instantiates the dynamics of rigid bodies in absolute coordinates on a GPU.
 #include "cuda/dynamics.hpp"
 #include "cuda/space/device_solver.cuh"
-#include "dynamics/rigid_dynamics.hpp"
+#include "dynamics/rigid/rigid_dynamics.hpp"
 
 namespace catena::cuda {
 

@@ -87,13 +87,99 @@ double from_ordered(std::int64_t key) {
     return std::bit_cast<double>(key >= 0 ? key : key ^ std::numeric_limits<std::int64_t>::max());
 }
 
+/// Throws if a received message does not have the expected length.
+void require_length(MPI_Status const& status, std::size_t expected) {
+    int count = 0;
+    check_mpi(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
+    if (static_cast<std::size_t>(count) != expected)
+        throw std::logic_error("message of " + std::to_string(count) + " bytes where " +
+                               std::to_string(expected) + " were expected");
+}
+
+/// Messages of any length, which MPI sends in pieces of at most `largest` bytes.
+class MessagePieces {
+  public:
+    /// The communicator must outlive the object.
+    MessagePieces(MPI_Comm ranks, std::size_t largest) : ranks_(ranks), largest_(largest) {}
+    std::size_t largest() const { return largest_; }
+
+    /// Calls action(piece) for consecutive pieces.
+    template <class Byte, class Action>
+    void for_each(std::span<Byte> bytes, Action action) const {
+        for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), largest_)))
+            action(bytes.first(std::min(bytes.size(), largest_)));
+    }
+    void broadcast(std::span<std::byte> data, int root) const {
+        for_each(data, [&](std::span<std::byte> piece) {
+            check_mpi(
+                MPI_Bcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, root, ranks_),
+                "MPI_Bcast");
+        });
+    }
+    void send(std::span<std::byte const> data, int to) const {
+        for_each(data, [&](std::span<std::byte const> piece) {
+            check_mpi(
+                MPI_Send(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, to, 0, ranks_),
+                "MPI_Send");
+        });
+    }
+    void receive(std::span<std::byte> data, int from) const {
+        for_each(data, [&](std::span<std::byte> piece) {
+            MPI_Status status;
+            check_mpi(MPI_Recv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, from, 0,
+                               ranks_, &status),
+                      "MPI_Recv");
+            require_length(status, piece.size());
+        });
+    }
+    /// Sends and receives at the same time. Data without bytes have no partner.
+    void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive,
+                  int from) const {
+        while (!send.empty() || !receive.empty()) {
+            std::span const out = send.first(std::min(send.size(), largest_));
+            std::span const in = receive.first(std::min(receive.size(), largest_));
+            MPI_Status status;
+            check_mpi(MPI_Sendrecv(out.data(), static_cast<int>(out.size()), MPI_BYTE,
+                                   out.empty() ? MPI_PROC_NULL : to, 0, in.data(),
+                                   static_cast<int>(in.size()), MPI_BYTE,
+                                   in.empty() ? MPI_PROC_NULL : from, 0, ranks_, &status),
+                      "MPI_Sendrecv");
+            if (!in.empty()) require_length(status, in.size());
+            send = send.subspan(out.size());
+            receive = receive.subspan(in.size());
+        }
+    }
+
+  private:
+    MPI_Comm ranks_;
+    std::size_t largest_;
+};
+
+/// Lengths of a gather's blocks; counts and offsets for MPI if the sum is short enough.
+struct GatherBlocks {
+    std::vector<std::int64_t> const& bytes;
+    std::vector<int> count, first;
+    bool short_enough = false;
+
+    /// Block of a rank in `all`.
+    std::span<std::byte> of(std::span<std::byte> all, int rank) const {
+        auto const begin = std::accumulate(bytes.begin(), bytes.begin() + rank, std::int64_t{0});
+        return all.subspan(static_cast<std::size_t>(begin),
+                           static_cast<std::size_t>(bytes[static_cast<std::size_t>(rank)]));
+    }
+    /// True if the rank's data, `own`, already lie at their position in `all`.
+    bool have(std::span<std::byte const> own, std::span<std::byte> all, int rank) const {
+        return !own.empty() && own.data() == of(all, rank).data();
+    }
+};
+
 /// Communicator over a duplicate of MPI_COMM_WORLD.
 class MpiCommunicator final : public Communicator {
   public:
     MpiCommunicator(int* argc, char*** argv, MpiOptions const& options)
         : library_(argc, argv),
           world_(duplicate_of_world()),
-          largest_message_(static_cast<std::size_t>(options.largest_message)),
+          pieces_(world_, static_cast<std::size_t>(options.largest_message)),
           rank_(world_.rank()),
           size_(world_.size()),
           on_host_(place_on_host(world_)) {
@@ -117,12 +203,12 @@ class MpiCommunicator final : public Communicator {
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
                     std::vector<std::int64_t> const& bytes_of_rank) const override {
-        Blocks const blocks = blocks_of(own, all, bytes_of_rank);
+        GatherBlocks const blocks = blocks_of(own, all, bytes_of_rank);
         ++rounds_;
         count_gather(static_cast<std::int64_t>(all.size()));
         if (two_stages_) return two_stages_->gather(own, all, bytes_of_rank);
         if (!blocks.short_enough) return all_gather_in_pieces(own, all, blocks);
-        void const* const send = in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
+        void const* const send = blocks.have(own, all, rank_) ? MPI_IN_PLACE : own.data();
         check_mpi(MPI_Allgatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(),
                                  blocks.count.data(), blocks.first.data(), MPI_BYTE, world_),
                   "MPI_Allgatherv");
@@ -130,12 +216,12 @@ class MpiCommunicator final : public Communicator {
 
     void gather(std::span<std::byte const> own, std::span<std::byte> all,
                 std::vector<std::int64_t> const& bytes_of_rank) const override {
-        Blocks const blocks =
+        GatherBlocks const blocks =
             rank_ == 0 ? blocks_of(own, all, bytes_of_rank) : blocks_of(own, {}, bytes_of_rank);
         ++rounds_;
         if (!blocks.short_enough) return gather_in_pieces(own, all, blocks);
         void const* const send =
-            rank_ == 0 && in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
+            rank_ == 0 && blocks.have(own, all, rank_) ? MPI_IN_PLACE : own.data();
         check_mpi(MPI_Gatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(),
                               blocks.count.data(), blocks.first.data(), MPI_BYTE, 0, world_),
                   "MPI_Gatherv");
@@ -143,7 +229,7 @@ class MpiCommunicator final : public Communicator {
 
     void broadcast(std::span<std::byte> data) const override {
         ++rounds_;
-        broadcast_in_pieces(data, 0);
+        pieces_.broadcast(data, 0);
     }
 
     void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive,
@@ -153,19 +239,7 @@ class MpiCommunicator final : public Communicator {
         if (from < 0) receive = {};
         ++traffic_.exchanges;
         traffic_.sent_bytes += static_cast<std::int64_t>(send.size());
-        while (!send.empty() || !receive.empty()) {
-            std::span const out = send.first(std::min(send.size(), largest_message_));
-            std::span const in = receive.first(std::min(receive.size(), largest_message_));
-            MPI_Status status;
-            check_mpi(MPI_Sendrecv(out.data(), static_cast<int>(out.size()), MPI_BYTE,
-                                   out.empty() ? MPI_PROC_NULL : to, 0, in.data(),
-                                   static_cast<int>(in.size()), MPI_BYTE,
-                                   in.empty() ? MPI_PROC_NULL : from, 0, world_, &status),
-                      "MPI_Sendrecv");
-            if (!in.empty()) require_length(status, in.size());
-            send = send.subspan(out.size());
-            receive = receive.subspan(in.size());
-        }
+        pieces_.exchange(send, to, receive, from);
     }
 
     void exchange_all(std::span<Outgoing const> out, std::span<Incoming const> in) const override {
@@ -173,14 +247,14 @@ class MpiCommunicator final : public Communicator {
         std::vector<MPI_Request> requests;
         std::vector<std::size_t> expected;  // bytes of the receives, which are the first requests
         for (Incoming const& m : in)
-            for_each_piece(m.bytes, [&](std::span<std::byte> piece) {
+            pieces_.for_each(m.bytes, [&](std::span<std::byte> piece) {
                 expected.push_back(piece.size());
                 check_mpi(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.from,
                                     0, world_, &requests.emplace_back()),
                           "MPI_Irecv");
             });
         for (Outgoing const& m : out)
-            for_each_piece(m.bytes, [&](std::span<std::byte const> piece) {
+            pieces_.for_each(m.bytes, [&](std::span<std::byte const> piece) {
                 check_mpi(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.to, 0,
                                     world_, &requests.emplace_back()),
                           "MPI_Isend");
@@ -233,24 +307,9 @@ class MpiCommunicator final : public Communicator {
         traffic_ += way_.within_and_between_hosts(bytes);
     }
 
-    /// Lengths of a gather's blocks; counts and offsets for MPI if the sum is short enough.
-    struct Blocks {
-        std::vector<std::int64_t> const& bytes;
-        std::vector<int> count, first;
-        bool short_enough = false;
-
-        /// Block of a rank in `all`.
-        std::span<std::byte> of(std::span<std::byte> all, int rank) const {
-            auto const begin =
-                std::accumulate(bytes.begin(), bytes.begin() + rank, std::int64_t{0});
-            return all.subspan(static_cast<std::size_t>(begin),
-                               static_cast<std::size_t>(bytes[static_cast<std::size_t>(rank)]));
-        }
-    };
-
     /// Checks the lengths of a gather's blocks. `all` may be empty on ranks that receive nothing.
-    Blocks blocks_of(std::span<std::byte const> own, std::span<std::byte> all,
-                     std::vector<std::int64_t> const& bytes) const {
+    GatherBlocks blocks_of(std::span<std::byte const> own, std::span<std::byte> all,
+                           std::vector<std::int64_t> const& bytes) const {
         auto const total =
             static_cast<std::size_t>(std::accumulate(bytes.begin(), bytes.end(), std::int64_t{0}));
         if (bytes.size() != static_cast<std::size_t>(size_) ||
@@ -258,7 +317,7 @@ class MpiCommunicator final : public Communicator {
             (!all.empty() && all.size() != total))
             throw std::logic_error(
                 "gather: the blocks do not have the lengths that bytes_of_rank gives them");
-        Blocks blocks{bytes, {}, {}, total <= largest_message_};
+        GatherBlocks blocks{bytes, {}, {}, total <= pieces_.largest()};
         if (!blocks.short_enough) return blocks;
         int first = 0;
         for (std::int64_t const b : bytes) {
@@ -268,70 +327,23 @@ class MpiCommunicator final : public Communicator {
         return blocks;
     }
 
-    /// True if `own` already lies at its position in `all`.
-    bool in_place(std::span<std::byte const> own, std::span<std::byte> all,
-                  Blocks const& blocks) const {
-        return !own.empty() && own.data() == blocks.of(all, rank_).data();
-    }
-
-    /// Calls action(piece) for consecutive pieces of at most the largest message.
-    template <class Byte, class Action>
-    void for_each_piece(std::span<Byte> bytes, Action action) const {
-        for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), largest_message_)))
-            action(bytes.first(std::min(bytes.size(), largest_message_)));
-    }
-
-    /// Broadcasts data of any length.
-    void broadcast_in_pieces(std::span<std::byte> data, int root) const {
-        while (!data.empty()) {
-            std::span const piece = data.first(std::min(data.size(), largest_message_));
-            check_mpi(
-                MPI_Bcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, root, world_),
-                "MPI_Bcast");
-            data = data.subspan(piece.size());
-        }
-    }
-
     /// Gathers blocks of any length by one broadcast per rank.
     void all_gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all,
-                              Blocks const& blocks) const {
-        if (!in_place(own, all, blocks))
+                              GatherBlocks const& blocks) const {
+        if (!blocks.have(own, all, rank_))
             std::copy(own.begin(), own.end(), blocks.of(all, rank_).begin());
-        for (int r = 0; r < size_; ++r) broadcast_in_pieces(blocks.of(all, r), r);
+        for (int r = 0; r < size_; ++r) pieces_.broadcast(blocks.of(all, r), r);
     }
 
     /// Gathers blocks of any length on rank 0 by point-to-point messages.
     void gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all,
-                          Blocks const& blocks) const {
+                          GatherBlocks const& blocks) const {
         if (rank_ != 0) {
-            for (; !own.empty(); own = own.subspan(std::min(own.size(), largest_message_)))
-                check_mpi(
-                    MPI_Send(own.data(), static_cast<int>(std::min(own.size(), largest_message_)),
-                             MPI_BYTE, 0, 0, world_),
-                    "MPI_Send");
+            pieces_.send(own, 0);
             return;
         }
-        if (!in_place(own, all, blocks)) std::copy(own.begin(), own.end(), all.begin());
-        for (int r = 1; r < size_; ++r) {
-            for (std::span<std::byte> rest = blocks.of(all, r); !rest.empty();) {
-                std::span const piece = rest.first(std::min(rest.size(), largest_message_));
-                MPI_Status status;
-                check_mpi(MPI_Recv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, r, 0,
-                                   world_, &status),
-                          "MPI_Recv");
-                require_length(status, piece.size());
-                rest = rest.subspan(piece.size());
-            }
-        }
-    }
-
-    /// Throws if a received message does not have the expected length.
-    static void require_length(MPI_Status const& status, std::size_t expected) {
-        int count = 0;
-        check_mpi(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
-        if (static_cast<std::size_t>(count) != expected)
-            throw std::logic_error("message of " + std::to_string(count) + " bytes where " +
-                                   std::to_string(expected) + " were expected");
+        if (!blocks.have(own, all, rank_)) std::copy(own.begin(), own.end(), all.begin());
+        for (int r = 1; r < size_; ++r) pieces_.receive(blocks.of(all, r), r);
     }
 
     /// Reduces one integer over the ranks.
@@ -346,7 +358,7 @@ class MpiCommunicator final : public Communicator {
     MpiLibrary
         library_;  // declared before world_: MPI is finalised after its communicators are freed
     MpiHandle world_;
-    std::size_t largest_message_;
+    MessagePieces pieces_;
     int rank_, size_;
     OnHost on_host_;
     std::unique_ptr<Hosts> hosts_;

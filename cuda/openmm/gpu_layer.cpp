@@ -36,7 +36,7 @@ void GpuLayer::order(std::span<double const> of_particle, std::span<std::int32_t
           "receive OpenMM's order");
     check(cudaStreamSynchronize(nullptr), "receive OpenMM's order");
     arrays_ = openmm_->arrays();
-    is_listed_ = false;
+    listed_positions_ = nullptr;
 }
 
 template <class Number>
@@ -50,11 +50,10 @@ void GpuLayer::put(Number const* all, void const* listed) {
 
 void GpuLayer::put(DeviceParticles const& all, Event const& complete) {
     complete.hold(stream_);
-    void const* const listed = is_listed_ ? listed_.data() : nullptr;
     if (all.double_position)
-        put<double>(all.double_position, listed);
+        put<double>(all.double_position, listed_positions_);
     else
-        put<float>(all.position, listed);
+        put<float>(all.position, listed_positions_);
     placed_.record(stream_);
 }
 
@@ -62,7 +61,7 @@ void GpuLayer::note_list(bool anew) {
     ++(anew ? pair_lists_.made : pair_lists_.kept);
     if (!anew) return;
     listed_.take(arrays_, stream_);
-    is_listed_ = true;
+    listed_positions_ = listed_.data();
     auto const lasts = static_cast<float>(openmm_->list_lasts());
     farthest_squared_ = lasts * lasts;
 }

@@ -58,7 +58,8 @@ class GpuLayer {
     Buffer<std::int32_t> from_;  // LayerPositions::from
     PinnedBuffer<std::int64_t> far_{1};
     ListedPositions listed_;
-    bool is_listed_ = false;  // true if listed_ has the present order
+    /// Positions in `listed_` in the present order; null if it has none.
+    void const* listed_positions_ = nullptr;
     float farthest_squared_ = 0;
     Event placed_{Event::For::order}, computed_{Event::For::order};
     DevicePath::PairLists pair_lists_;

@@ -13,19 +13,19 @@ class DeviceCrossing {
     DeviceCrossing(ChainGroup const& group, DeviceSpace const& space)
         : space_(space),
           direction_(group.beads || group.linked ? group.size : 0),
-          tip_direction_(group.has_tips() ? group.size : 0),
+          tip_direction_(group.ends.has_tips() ? group.size : 0),
           rotation_(group.beads ? 0 : group.size),
-          moving_r2_(group.moving_meeting() ? group.size : 0),
-          moving_axes2_(group.moving_meeting() ? group.size : 0),
+          moving_r2_(group.joints.moving_meeting() ? group.size : 0),
+          moving_axes2_(group.joints.moving_meeting() ? group.size : 0),
           torque_(group.beads ? 0 : group.size),
           force_(group.size),
           omega_(group.beads ? 0 : group.size),
           bias_(group.size + 1, group.directions),
-          tip_bias_(group.has_tips() ? group.size : 0, group.directions),
+          tip_bias_(group.ends.has_tips() ? group.size : 0, group.directions),
           alpha_(group.beads ? 0 : group.size),
           acceleration_(group.size),
           joint_force_(group.size + 1, group.directions),
-          tip_force_(group.has_tips() ? group.size : 0, group.directions) {}
+          tip_force_(group.ends.has_tips() ? group.size : 0, group.directions) {}
 
     /// Enqueues the copy of the configuration and returns the device's views.
     ConfigurationView take(ConfigurationView const& c) const {

@@ -59,20 +59,20 @@ class ModelArrays {
     ModelArrays(ChainGroup const& group, bool with_inertias)
         : size_(group.size),
           sweeps_read_inertias_(group.mass_of_sweeps().size() > 0),
-          is_first_(group.is_first),
-          is_last_(group.is_last),
-          restricted_(group.restricted_of_joint),
-          jointed_tip_(group.jointed_tip),
-          tip_screw_(group.tip_screw),
-          inverse_mass_(group.inverse_mass),
-          inverse_inertia_(group.inverse_inertia),
-          r1_(group.r1),
-          r2_(group.r2),
-          axes1_(group.axes1),
-          axes2_(group.axes2),
-          screw_(group.screw),
-          mass_(with_inertias ? group.mass : group.mass_of_sweeps()),
-          inertia_(with_inertias ? group.inertia : group.inertia_of_sweeps()) {}
+          is_first_(group.ends.is_first),
+          is_last_(group.ends.is_last),
+          restricted_(group.joints.restricted),
+          jointed_tip_(group.ends.jointed_tip),
+          tip_screw_(group.ends.tip_screw),
+          inverse_mass_(group.bodies.inverse_mass),
+          inverse_inertia_(group.bodies.inverse_inertia),
+          r1_(group.bodies.r1),
+          r2_(group.bodies.r2),
+          axes1_(group.bodies.axes1),
+          axes2_(group.bodies.axes2),
+          screw_(group.joints.screw),
+          mass_(with_inertias ? group.bodies.mass : group.mass_of_sweeps()),
+          inertia_(with_inertias ? group.bodies.inertia : group.inertia_of_sweeps()) {}
 
     /// Returns the addresses of the model in the form that leaves read.
     GroupView view() const {
@@ -112,7 +112,7 @@ class ModelArrays {
     AlikeField<3> r1_, r2_;
     /// Axes of the inboard joint in its meeting frame, and of the outboard joint in body axes.
     AlikeField<6> axes1_, axes2_;
-    /// Parameters {c, s, rate, order} of joints that translate (ChainGroup::screw).
+    /// Parameters {c, s, rate, order} of joints that translate (LocalJoints::screw).
     FixedField<4> screw_;
     /// Masses and inertias, for articulated handles, runs on revolute joints and dynamics in joint
     /// coordinates.

@@ -14,7 +14,8 @@ std::unique_ptr<ChainSolver> make_device_solver(ChainGroup const& group, DeviceS
         group.directions, [&](auto directions) -> std::unique_ptr<ChainSolver> {
             constexpr int K = decltype(directions)::value;
             if constexpr (K >= 5)  // Handles of joints that translate carry five directions or six.
-                if (group.has_screws) return make_joint_solver<K, true>(group, space, communicator);
+                if (group.joints.has_screws)
+                    return make_joint_solver<K, true>(group, space, communicator);
             return make_joint_solver<K, false>(group, space, communicator);
         });
 }

@@ -58,7 +58,7 @@ class DeviceSpace : public DeviceAccess, public SharedModels<DeviceModel, ModelA
     static constexpr bool has_teams = has_blocks<K>;
     /// True if every chain fits in the registers of one block and no chain has a jointed tip.
     bool pays_by_blocks(ChainGroup const& group) const {
-        return !group.has_tips() &&
+        return !group.ends.has_tips() &&
                std::all_of(group.pieces.begin(), group.pieces.end(), [](dca::Piece const& piece) {
                    return piece.count <= DeviceBlocks::longest_chain;
                });

@@ -12,7 +12,7 @@
 #include "dca/space_levels.hpp"
 #include "dynamics/bead_dynamics.hpp"
 #include "dynamics/joint/joint_dynamics_in.hpp"
-#include "dynamics/rigid_dynamics.hpp"
+#include "dynamics/rigid/rigid_dynamics.hpp"
 #include "math/with_number.hpp"
 
 namespace catena::cuda {

@@ -279,20 +279,20 @@ class MemoryEstimator : public HostAccess {
 class MemoryEstimator::ModelArrays {
   public:
     ModelArrays(ChainGroup const& group, bool with_inertias)
-        : is_first_(group.is_first),
-          is_last_(group.is_last),
-          restricted_(group.restricted_of_joint),
-          jointed_tip_(group.jointed_tip),
-          tip_screw_(group.tip_screw),
-          inverse_mass_(group.inverse_mass),
-          inverse_inertia_(group.inverse_inertia),
-          r1_(group.r1),
-          r2_(group.r2),
-          axes1_(group.axes1),
-          axes2_(group.axes2),
-          screw_(group.screw),
-          mass_(with_inertias ? group.mass : group.mass_of_sweeps()),
-          inertia_(with_inertias ? group.inertia : group.inertia_of_sweeps()) {}
+        : is_first_(group.ends.is_first),
+          is_last_(group.ends.is_last),
+          restricted_(group.joints.restricted),
+          jointed_tip_(group.ends.jointed_tip),
+          tip_screw_(group.ends.tip_screw),
+          inverse_mass_(group.bodies.inverse_mass),
+          inverse_inertia_(group.bodies.inverse_inertia),
+          r1_(group.bodies.r1),
+          r2_(group.bodies.r2),
+          axes1_(group.bodies.axes1),
+          axes2_(group.bodies.axes2),
+          screw_(group.joints.screw),
+          mass_(with_inertias ? group.bodies.mass : group.mass_of_sweeps()),
+          inertia_(with_inertias ? group.bodies.inertia : group.inertia_of_sweeps()) {}
 
   private:
     List<std::uint8_t> is_first_, is_last_, restricted_;
@@ -333,19 +333,19 @@ class CountingCrossing {
   public:
     CountingCrossing(ChainGroup const& group, MemoryEstimator const&)
         : direction_(group.beads || group.linked ? group.size : 0),
-          tip_direction_(group.has_tips() ? group.size : 0),
+          tip_direction_(group.ends.has_tips() ? group.size : 0),
           rotation_(group.beads ? 0 : group.size),
-          moving_r2_(group.moving_meeting() ? group.size : 0),
-          moving_axes2_(group.moving_meeting() ? group.size : 0),
+          moving_r2_(group.joints.moving_meeting() ? group.size : 0),
+          moving_axes2_(group.joints.moving_meeting() ? group.size : 0),
           torque_(group.beads ? 0 : group.size),
           force_(group.size),
           omega_(group.beads ? 0 : group.size),
           bias_(group.size + 1, group.directions),
-          tip_bias_(group.has_tips() ? group.size : 0, group.directions),
+          tip_bias_(group.ends.has_tips() ? group.size : 0, group.directions),
           alpha_(group.beads ? 0 : group.size),
           acceleration_(group.size),
           joint_force_(group.size + 1, group.directions),
-          tip_force_(group.has_tips() ? group.size : 0, group.directions) {}
+          tip_force_(group.ends.has_tips() ? group.size : 0, group.directions) {}
     template <class HostView>
     HostView take(HostView const& host) const {
         return host;

@@ -97,7 +97,7 @@ PeerBody slide_at(Vec3 const& position, Vec3 const& velocity, double mass) {
 
 void append(std::vector<double>& table, BodyArrays const& bodies) {
     if (floats(bodies.joint[0]))
-        append(table, slide_at(bodies.free_position, bodies.free_velocity, 0));
+        append(table, slide_at(bodies.free_base.position, bodies.free_base.velocity, 0));
     for (std::size_t k = 0; k < bodies.size(); ++k) append(table, body_of(bodies, k));
 }
 

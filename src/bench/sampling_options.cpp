@@ -26,7 +26,8 @@ void refuse_for(SamplingOptionTexts const& words, std::string const& name) {
                                         {"--discard", words.discard},
                                         {"--every", words.every},
                                         {"--equilibrate", words.equilibration},
-                                        {"--seconds", words.seconds}})
+                                        {"--seconds", words.seconds},
+                                        {"--dense", words.dense ? "yes" : ""}})
         if (!given.empty())
             throw InputError(
                 fmt::format("catena bench {1} does not take {0}",
@@ -42,8 +43,13 @@ void add_sampling(OptionList& bench, SamplingOptionTexts& words) {
         bench.value(option, word, type, std::string("for sampling: ") + what);
     };
     add("SCENE", words.scene, "",
-        "a scene of one chain with CALVADOS 2 (default: alpha-synuclein)");
+        "a scene of one chain with CALVADOS 2, with --dense of any number (default: "
+        "alpha-synuclein)");
     add("--copies", words.copies, "N", "chains side by side that never meet (default 71)");
+    bench.flag("--dense", words.dense,
+               "for sampling: all chains of the scene in their periodic box, instead of copies "
+               "that never meet; energies, contacts, and densities of slabs are compared, too "
+               "(default scene: --copies of alpha-synuclein at 330 mg/ml)");
     add("--methods", words.methods, "M,...",
         "rigid, rigid-fixman, bonds, constraints: Catena's rigid links, without and with the "
         "Fixman potential; OpenMM's harmonic bonds and constraints (default: all but "
@@ -67,6 +73,10 @@ SamplingOptions sampling_options(SamplingOptionTexts const& words, std::string c
     }
     options.scene = words.scene;
     require_files_apart(words.scene, json, "");
+    options.dense = words.dense;
+    if (words.dense && !words.scene.empty() && !words.copies.empty())
+        throw InputError("--copies repeats one chain, and --dense takes all chains of SCENE",
+                         "--copies", "set chains[0].count of the scene");
     if (!words.copies.empty()) options.copies = whole_number("--copies", words.copies, 1, 100000);
     if (!words.methods.empty()) options.methods = comma_list("--methods", words.methods);
     for (std::string const& method : options.methods) sampling_method_named("--methods", method);

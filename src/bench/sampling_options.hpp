@@ -8,9 +8,10 @@
 
 namespace catena::command {
 
-/// Texts of the options; empty if not given.
+/// Texts of the options; empty if not given. `dense`: the flag is given.
 struct SamplingOptionTexts {
     std::string scene, copies, methods, steps, duration, discard, every, equilibration, seconds;
+    bool dense = false;
 };
 
 /// Adds the options to `catena bench`.

@@ -24,7 +24,7 @@ constexpr double tolerance_of_constraints = 2e-5;
 /// Error of a bond, relative to its length, that counts as torn: ten standard deviations.
 constexpr double torn = 0.5;
 
-/// State of the copies at one moment.
+/// State of the chains at one moment.
 struct Moment {
     std::vector<Vec3> position;
     /// Kinetic energy, kJ/mol.
@@ -33,7 +33,7 @@ struct Moment {
     double link_error = 0;
 };
 
-/// Moves the copies by one method.
+/// Moves the chains by one method.
 class Mover {
   public:
     virtual ~Mover() = default;
@@ -45,7 +45,7 @@ class Mover {
     virtual void describe(SamplingRow&) = 0;
 };
 
-/// Moves the copies by Catena's g-BAOAB.
+/// Moves the chains by Catena's g-BAOAB.
 class CatenaMover final : public Mover {
   public:
     CatenaMover(Scene scene, Communicator const& communicator)
@@ -62,16 +62,16 @@ class CatenaMover final : public Mover {
     double link_error() override { return catena_.constraint_error(); }
     double tolerance() const override { return catena_.tolerance(); }
     void describe(SamplingRow& row) override {
-        row.backend = name_of(catena_.system().backend());
-        row.platform = catena_.system().openmm()->platform();
-        row.path = catena_.system().openmm()->path();
+        row.engine.backend = name_of(catena_.system().backend());
+        row.engine.platform = catena_.system().openmm()->platform();
+        row.engine.path = catena_.system().openmm()->path();
     }
 
   private:
     CatenaSteps catena_;
 };
 
-/// Moves the copies by OpenMM's own integrator.
+/// Moves the chains by OpenMM's own integrator.
 class OpenMmMover final : public Mover {
   public:
     OpenMmMover(Scene scene, BeadSystem const& beads, Communicator const& communicator,
@@ -99,8 +99,8 @@ class OpenMmMover final : public Mover {
         return links_ == OwnLinks::bonds ? torn : tolerance_of_constraints;
     }
     void describe(SamplingRow& row) override {
-        row.backend = "OpenMM";
-        row.platform = own_->platform();
+        row.engine.backend = "OpenMM";
+        row.engine.platform = own_->platform();
     }
 
   private:
@@ -109,15 +109,15 @@ class OpenMmMover final : public Mover {
     std::unique_ptr<OpenMmIntegrator> own_;
 };
 
-/// Returns the mover of a method, at a fresh place on the grid.
-std::unique_ptr<Mover> make_mover(SamplingCopies& copies, Communicator const& communicator,
+/// Returns the mover of a method, at the start of a row.
+std::unique_ptr<Mover> make_mover(SampledChains& chains, Communicator const& communicator,
                                   Backend backend, SamplingMethod method, double step,
                                   double time) {
-    Scene scene = copies.scene(step, time);
+    Scene scene = chains.scene(step, time);
     scene.solver.backend = backend;
     if (method == SamplingMethod::bonds || method == SamplingMethod::constraints)
         return std::make_unique<OpenMmMover>(
-            scene, copies.beads(), communicator,
+            scene, chains.beads(), communicator,
             method == SamplingMethod::bonds ? OwnLinks::bonds : OwnLinks::constraints, backend);
     scene.dynamics.fixman = method == SamplingMethod::rigid_fixman;
     // The Fixman force is computed on the host; OpenMM stays on the GPU.
@@ -128,13 +128,17 @@ std::unique_ptr<Mover> make_mover(SamplingCopies& copies, Communicator const& co
     return std::make_unique<CatenaMover>(std::move(scene), communicator);
 }
 
-/// Series of samples: one value per copy and sample, and one kinetic energy of all copies.
+/// Series of samples: one value per chain and sample, and one kinetic energy of all chains.
 struct Found {
     CopySeries gyration, end_to_end, cosine, virial, divergence, kinetic;
+    /// Numbers of all chains together, with their values so far.
+    std::vector<std::pair<SystemValue, CopySeries>> system;
+    /// Centres of mass of the chains at the first sample and at the last.
+    std::vector<Vec3> first, last;
 
-    explicit Found(std::int64_t copies) : kinetic(1) {
+    explicit Found(std::int64_t chains) : kinetic(1) {
         for (CopySeries* each : {&gyration, &end_to_end, &cosine, &virial, &divergence})
-            each->resize(static_cast<std::size_t>(copies));
+            each->resize(static_cast<std::size_t>(chains));
     }
     void add(std::vector<ChainSample> const& samples) {
         for (std::size_t c = 0; c < samples.size(); ++c) {
@@ -145,17 +149,36 @@ struct Found {
             divergence[c].push_back(samples[c].divergence);
         }
     }
+    void add(std::vector<SystemValue> const& values) {
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            if (i == system.size()) system.push_back({values[i], CopySeries(1)});
+            system[i].second.front().push_back(values[i].value);
+        }
+    }
+    void add_centres(std::vector<Vec3> centres) {
+        if (first.empty()) first = centres;
+        last = std::move(centres);
+    }
+    /// Returns <|dx|^2> / (6 t) in nm^2/ns with its standard error over chains. `time`: t, ps.
+    Blocked diffusion(double time) const {
+        CopySeries each;
+        for (std::size_t c = 0; c < first.size(); ++c) {
+            Vec3 const moved = last[c] - first[c];
+            each.push_back({1e3 * dot(moved, moved) / (6 * time)});
+        }
+        return time > 0 ? blocked_mean(each) : Blocked{};
+    }
 };
 
 /// The course of a row: discarded steps, then steps and samples.
 class RowRun {
   public:
-    RowRun(SamplingCopies& copies, BenchRequest const& request, SamplingRow& row)
-        : copies_(copies),
+    RowRun(SampledChains& chains, BenchRequest const& request, SamplingRow& row)
+        : chains_(chains),
           options_(request.sampling),
           quiet_(request.quiet),
           row_(row),
-          found_(copies.copies()) {
+          found_(chains.chains()) {
         of_block_ = std::max<std::int64_t>(1, std::llround(options_.every / row.step));
         double const block = row.every = static_cast<double>(of_block_) * row.step;
         discarded_ = std::llround(std::ceil(options_.discard / block - 1e-9));
@@ -178,10 +201,10 @@ class RowRun {
                 row_.link_error = larger(row_.link_error, mover.link_error());
             } else {
                 stepped_.push_back((after - before) / static_cast<double>(of_block_));
-                row_.stepping += after - before;
-                row_.steps += of_block_;
+                row_.times.stepping += after - before;
+                row_.times.steps += of_block_;
                 sample(mover);
-                row_.sampling += seconds_now() - after;
+                row_.times.sampling += seconds_now() - after;
             }
             if (!(row_.link_error <= std::max(torn, mover.tolerance())))
                 throw ComputationError("links are torn");
@@ -194,43 +217,50 @@ class RowRun {
 
     /// Sets the means of the row from its samples.
     void conclude(SamplingMethod method) {
-        Scene const& model = copies_.model();
+        Scene const& model = chains_.model();
         row_.samples = std::ssize(found_.kinetic.front());
         row_.time = static_cast<double>(row_.samples * of_block_) * row_.step;
-        row_.all = 1e-3 * row_.time * static_cast<double>(copies_.copies());
+        row_.all = 1e-3 * row_.time * static_cast<double>(chains_.copies());
         row_.gyration = blocked_mean(found_.gyration);
+        for (std::vector<double> const& each : found_.gyration)
+            row_.gyration_of_chains.push_back(blocked_mean({each}).mean);
         row_.end_to_end = blocked_mean(found_.end_to_end);
         row_.cosine = blocked_mean(found_.cosine);
-        row_.seconds = spread_of(stepped_);
+        row_.times.seconds = spread_of(stepped_);
         if (row_.samples == 0) return;
         row_.temperature = blocked_ratio(found_.virial, found_.divergence);
         row_.temperature.mean /= model.boltzmann();
         row_.temperature.error /= model.boltzmann();
-        std::int64_t dof = 3 * copies_.beads().size();
-        if (method != SamplingMethod::bonds) dof -= std::ssize(copies_.beads().links);
+        std::int64_t dof = 3 * chains_.beads().size();
+        if (method != SamplingMethod::bonds) dof -= std::ssize(chains_.beads().links);
         for (double& kinetic : found_.kinetic.front())
             kinetic *= 2 / (model.boltzmann() * static_cast<double>(dof));
         row_.kinetic = blocked_mean(found_.kinetic);
+        for (auto const& [what, series] : found_.system)
+            row_.together.means.push_back({what.name, what.unit, blocked_mean(series)});
+        row_.together.diffusion = found_.diffusion(row_.time - row_.every);
     }
 
   private:
-    /// Takes one sample of all copies.
+    /// Takes one sample of all chains.
     void sample(Mover& mover) {
         Moment const now = mover.now();
         row_.link_error = larger(row_.link_error, now.link_error);
-        double const nearest = copies_.nearest(now.position);
+        double const nearest = chains_.nearest(now.position);
         if (std::isnan(nearest)) throw ComputationError("positions are not finite");
-        row_.nearest = std::min(row_.nearest, nearest);
+        row_.distances.nearest = std::min(row_.distances.nearest, nearest);
         std::vector<ChainSample> const samples =
-            copies_.sample(now.position, measure_of(row_.method));
+            chains_.sample(now.position, measure_of(row_.method));
         for (ChainSample const& each : samples)
             if (!std::isfinite(each.radius_of_gyration + each.virial + each.divergence))
                 throw ComputationError("positions or forces are not finite");
         found_.add(samples);
+        found_.add(chains_.system_values(now.position));
+        found_.add_centres(chains_.centres(now.position));
         found_.kinetic.front().push_back(now.kinetic);
     }
 
-    SamplingCopies& copies_;
+    SampledChains& chains_;
     SamplingOptions const& options_;
     bool quiet_;
     SamplingRow& row_;
@@ -249,9 +279,9 @@ void judge(SamplingRow& row, double tolerance) {
         row.why =
             fmt::format("links have errors of {:.1e} of their length, the tolerance is {:.0e}",
                         row.link_error, tolerance);
-    } else if (!(row.nearest > SamplingCopies::cutoff())) {
+    } else if (!(row.distances.nearest > longest_cutoff())) {
         row.why = fmt::format("two copies came within {:.3g} nm of each other, forces reach {} nm",
-                              row.nearest, SamplingCopies::cutoff());
+                              row.distances.nearest, longest_cutoff());
     } else if (!std::isfinite(row.gyration.mean + row.end_to_end.mean + row.cosine.mean +
                               row.temperature.mean)) {
         row.why = "a mean is not finite";
@@ -260,17 +290,13 @@ void judge(SamplingRow& row, double tolerance) {
     }
 }
 
-/// Returns the rounding error of a coordinate in single precision.
-double rounding_at(double coordinate) {
-    auto const x = static_cast<float>(coordinate);
-    return 0.5 * static_cast<double>(std::nextafter(x, INFINITY) - x);
-}
-
 }  // namespace
 
 char const* name_of(SamplingMethod method) {
     return method_names[static_cast<std::size_t>(method)].data();
 }
+
+bool is_energy(SystemMean const& each) { return each.name.ends_with(" energy"); }
 
 SamplingMethod sampling_method_named(std::string const& option, std::string const& name) {
     known_value(option, name, method_names);
@@ -285,18 +311,17 @@ BondMeasure measure_of(SamplingMethod method) {
                : BondMeasure::flexible;
 }
 
-SamplingRow run_sampling_row(SamplingCopies& copies, BenchRequest const& request,
+SamplingRow run_sampling_row(SampledChains& chains, BenchRequest const& request,
                              Communicator const& communicator, Backend backend,
                              SamplingMethod method, double step) {
     SamplingRow row;
     row.method = method;
     row.step = step;
-    RowRun run(copies, request, row);
-    row.spacing = copies.spacing(run.time());
-    row.rounding = rounding_at(copies.extent(run.time()));
+    RowRun run(chains, request, row);
+    row.distances = chains.distances(run.time());
     std::unique_ptr<Mover> mover;
     try {
-        mover = make_mover(copies, communicator, backend, method, step, run.time());
+        mover = make_mover(chains, communicator, backend, method, step, run.time());
         mover->describe(row);
         run.run(*mover);
         run.conclude(method);
@@ -314,14 +339,14 @@ SamplingRow run_sampling_row(SamplingCopies& copies, BenchRequest const& request
     return row;
 }
 
-void equilibrate(SamplingCopies& copies, BenchRequest const& request,
+void equilibrate(SampledChains& chains, BenchRequest const& request,
                  Communicator const& communicator, Backend backend, double time) {
     int constexpr of_block = 100;
-    double const step = copies.model().dynamics.step;
+    double const step = chains.model().dynamics.step;
     std::int64_t const blocks = std::llround(std::ceil(time / (step * of_block)));
     if (blocks == 0) return;
     std::unique_ptr<Mover> const mover =
-        make_mover(copies, communicator, backend, SamplingMethod::rigid, step, time);
+        make_mover(chains, communicator, backend, SamplingMethod::rigid, step, time);
     Progress progress(request.quiet, 0, blocks * of_block, step, false);
     auto const fail = [step](std::string const& why) {
         throw ComputationError(
@@ -339,8 +364,8 @@ void equilibrate(SamplingCopies& copies, BenchRequest const& request,
     Moment const now = mover->now();
     if (!(now.link_error <= mover->tolerance()))
         fail(fmt::format("links have errors of {:.1e} of their length", now.link_error));
-    if (!(copies.nearest(now.position) > SamplingCopies::cutoff())) fail("copies have met");
-    copies.start_from(now.position);
+    if (!(chains.nearest(now.position) > longest_cutoff())) fail("copies have met");
+    chains.start_from(now.position);
 }
 
 }  // namespace catena::command

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/sampling_copies.hpp"
+#include "bench/sampled_chains.hpp"
 #include "console/outcome.hpp"
 #include "math/blocking.hpp"
 #include "measure/timing.hpp"
@@ -20,6 +20,38 @@ char const* name_of(SamplingMethod);
 SamplingMethod sampling_method_named(std::string const& option, std::string const& name);
 /// Returns the measure of bond directions that the method samples.
 BondMeasure measure_of(SamplingMethod);
+
+/// Mean of a number that describes all chains (SystemValue).
+struct SystemMean {
+    std::string name, unit;
+    Blocked mean;
+};
+/// True if the number is an energy of a term.
+bool is_energy(SystemMean const&);
+
+/// What describes all chains of a row together.
+struct ChainsTogether {
+    /// Means; none for copies that never meet.
+    std::vector<SystemMean> means;
+    /// Displacement of the chains' centres of mass from the first sample to the last,
+    /// <|dx|^2> / (6 t), nm^2/ns, with the standard error over chains; NaN with one sample.
+    Blocked diffusion;
+};
+
+/// Wall time of the steps and samples of a row.
+struct SamplingTimes {
+    /// Seconds per step, from the blocks between samples.
+    Spread seconds;
+    /// Seconds spent in steps and in samples.
+    double stepping = 0, sampling = 0;
+    /// Number of these steps.
+    std::int64_t steps = 0;
+};
+
+/// What computes a row: backend of the chains, platform and path of the forces.
+struct SamplingEngine {
+    std::string backend, platform, path;
+};
 
 /// Conditions and results of a row. Means have standard errors by blocking.
 struct SamplingRow {
@@ -38,37 +70,31 @@ struct SamplingRow {
     bool cut = false;
     /// Means: nm, nm, 1.
     Blocked gyration, end_to_end, cosine;
+    /// Mean radius of gyration of each chain, nm.
+    std::vector<double> gyration_of_chains;
     /// Configurational (measure/chain_sample.hpp) and kinetic temperature, K.
     Blocked temperature, kinetic;
+    ChainsTogether together;
     /// Largest relative error of a link.
     double link_error = 0;
-    /// Smallest distance of two copies, nm.
-    double nearest = INFINITY;
-    /// Distance of the copies at the start, nm.
-    double spacing = 0;
-    /// Rounding of positions in single precision at the outermost possible bead, nm.
-    double rounding = 0;
-    /// Seconds per step, from the blocks between samples.
-    Spread seconds;
-    /// Seconds spent in steps and in samples.
-    double stepping = 0, sampling = 0;
-    /// Number of these steps.
-    std::int64_t steps = 0;
-    /// Backend of the chains; platform and path of the forces.
-    std::string backend, platform, path;
+    CopyDistances distances;
+    SamplingTimes times;
+    SamplingEngine engine;
 
     bool valid() const { return state == "VALID"; }
     double ns_per_day() const {
-        return stepping > 0 ? static_cast<double>(steps) * step * 1e-3 * 86400 / stepping : NAN;
+        return times.stepping > 0
+                   ? static_cast<double>(times.steps) * step * 1e-3 * 86400 / times.stepping
+                   : NAN;
     }
 };
 
 /// Runs a row. A failed computation becomes its state. Throws InputError if the row cannot run at
 /// all.
-SamplingRow run_sampling_row(SamplingCopies&, BenchRequest const&, Communicator const&, Backend,
+SamplingRow run_sampling_row(SampledChains&, BenchRequest const&, Communicator const&, Backend,
                              SamplingMethod, double step);
 
-/// Moves the start of the copies by this many ps on rigid links, with the scene's own time step.
-void equilibrate(SamplingCopies&, BenchRequest const&, Communicator const&, Backend, double time);
+/// Moves the start of the chains by this many ps on rigid links, with the scene's own time step.
+void equilibrate(SampledChains&, BenchRequest const&, Communicator const&, Backend, double time);
 
 }  // namespace catena::command

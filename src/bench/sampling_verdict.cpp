@@ -3,29 +3,67 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace catena::command {
 namespace {
 
 /// Largest allowed bias in percent.
 constexpr double allowed_percent = 1;
+/// Number of chains from which the scatter of their differences gives an error.
+constexpr std::size_t chains_to_compare = 16;
 
-/// Returns the bias of a row.
-SamplingBias bias_of(SamplingRow const& row, SamplingRow const& smallest, double temperature) {
-    SamplingBias bias{NAN, NAN, NAN, NAN};
-    if (!row.valid()) return bias;
+/// Returns the bias of a mean relative to another, in percent of `scale`.
+QuantityBias bias_of(std::string name, Blocked const& mean, Blocked const& reference,
+                     double scale) {
+    return {std::move(name), 100 * (mean.mean - reference.mean) / scale,
+            100 * std::hypot(mean.error, reference.error) / scale,
+            mean.plateau && reference.plateau};
+}
+
+/// Returns the bias of the radius of gyration. All rows start alike, and chains that are slow to
+/// relax remember it: the error is that of the differences chain by chain.
+QuantityBias bias_of_gyration(SamplingRow const& row, SamplingRow const& smallest) {
+    QuantityBias bias = bias_of("Rg", row.gyration, smallest.gyration, smallest.gyration.mean);
+    CopySeries differences;
+    for (std::size_t c = 0;
+         c < std::min(row.gyration_of_chains.size(), smallest.gyration_of_chains.size()); ++c)
+        differences.push_back({row.gyration_of_chains[c] - smallest.gyration_of_chains[c]});
+    if (differences.size() < chains_to_compare) return bias;
+    bias.error = 100 * blocked_mean(differences).error / smallest.gyration.mean;
+    bias.known = true;
+    return bias;
+}
+
+/// Returns the sum of the magnitudes of all energies of a row.
+double energy_scale(SamplingRow const& row) {
+    double sum = 0;
+    for (SystemMean const& each : row.together.means)
+        if (is_energy(each)) sum += std::abs(each.mean.mean);
+    return sum;
+}
+
+/// Returns the biases of a row.
+SamplingBias biases_of(SamplingRow const& row, SamplingRow const& smallest, double temperature) {
+    SamplingBias bias;
     bias.is_reference = &row == &smallest;
-    bias.errors_known = row.temperature.plateau;
-    if (bias.is_reference) {
-        bias.gyration = bias.gyration_error = 0;
-    } else if (smallest.valid()) {
-        bias.gyration = 100 * (row.gyration.mean / smallest.gyration.mean - 1);
-        bias.gyration_error =
-            100 * std::hypot(row.gyration.error, smallest.gyration.error) / smallest.gyration.mean;
-        bias.errors_known = bias.errors_known && row.gyration.plateau && smallest.gyration.plateau;
+    Blocked const thermostat{.mean = temperature, .error = 0, .block = 1, .plateau = true};
+    bias.of = {bias_of_gyration(row, smallest),
+               bias_of("T conf.", row.temperature, thermostat, temperature)};
+    double const energies = energy_scale(smallest);
+    for (std::size_t i = 0; i < row.together.means.size() && i < smallest.together.means.size();
+         ++i) {
+        SystemMean const &mean = row.together.means[i], &reference = smallest.together.means[i];
+        bias.of.push_back(bias_of(mean.name, mean.mean, reference.mean,
+                                  is_energy(mean) ? energies : std::abs(reference.mean.mean)));
     }
-    bias.temperature = 100 * (row.temperature.mean / temperature - 1);
-    bias.temperature_error = 100 * row.temperature.error / temperature;
+    for (QuantityBias& each : bias.of) {
+        bool const of_mean = &each != &bias.of[1];
+        if (!row.valid() || (of_mean && !smallest.valid()))
+            each.percent = each.error = NAN;
+        else if (of_mean && bias.is_reference)
+            each.percent = each.error = 0, each.known = true;
+    }
     return bias;
 }
 
@@ -36,26 +74,34 @@ Difference difference(Blocked const& of, Blocked const& less) {
 
 }  // namespace
 
+bool QuantityBias::allowed() const {
+    return error < allowed_percent && std::abs(percent) < allowed_percent;
+}
+
+bool QuantityBias::shown() const {
+    return known && std::abs(percent) + 2 * error < allowed_percent;
+}
+
+bool QuantityBias::refuted() const {
+    return known && std::abs(percent) - 2 * error >= allowed_percent;
+}
+
 bool SamplingBias::allowed() const {
-    bool const can_tell = gyration_error < allowed_percent && temperature_error < allowed_percent;
-    return can_tell && std::abs(gyration) < allowed_percent &&
-           std::abs(temperature) < allowed_percent;
+    return std::all_of(of.begin(), of.end(), [](auto const& each) { return each.allowed(); });
 }
 
 bool SamplingBias::shown() const {
-    return errors_known && std::abs(gyration) + 2 * gyration_error < allowed_percent &&
-           std::abs(temperature) + 2 * temperature_error < allowed_percent;
+    return std::all_of(of.begin(), of.end(), [](auto const& each) { return each.shown(); });
 }
 
 bool SamplingBias::refuted() const {
-    return errors_known && (std::abs(gyration) - 2 * gyration_error >= allowed_percent ||
-                            std::abs(temperature) - 2 * temperature_error >= allowed_percent);
+    return std::any_of(of.begin(), of.end(), [](auto const& each) { return each.refuted(); });
 }
 
 char const* SamplingBias::word() const {
     if (refuted()) return "no";
     if (is_reference) return "reference";
-    if (std::isnan(gyration)) return "no reference";
+    if (std::isnan(gyration().percent)) return "no reference";
     return shown() ? "shown" : allowed() ? "not contradicted" : "errors too large to tell";
 }
 
@@ -75,7 +121,7 @@ std::vector<SamplingMethodVerdict> verdicts_of(std::vector<SamplingRow> const& r
         std::stable_sort(each.rows.begin(), each.rows.end(),
                          [](auto const* a, auto const* b) { return a->step < b->step; });
         for (SamplingRow const* row : each.rows)
-            each.bias.push_back(bias_of(*row, *each.rows.front(), temperature));
+            each.bias.push_back(biases_of(*row, *each.rows.front(), temperature));
         bool all_allowed = true, all_shown = true;
         for (std::size_t i = 0; i < each.rows.size(); ++i) {
             all_allowed = all_allowed && each.bias[i].allowed();

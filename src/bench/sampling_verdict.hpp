@@ -3,27 +3,43 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bench/sampling_rows.hpp"
 
 namespace catena::command {
 
-/// Biases in percent with standard errors: of the mean radius of gyration relative to the same
-/// method's smallest step, and of the configurational temperature relative to that of the
-/// thermostat.
-struct SamplingBias {
-    /// Zero for the smallest step, which is the reference; NaN if that row is not VALID.
-    double gyration = 0, gyration_error = 0;
-    double temperature = 0, temperature_error = 0;
-    bool is_reference = false;
-    /// True if all errors have reached their plateau.
-    bool errors_known = false;
-    /// True if both biases and their errors are below 1 %.
+/// Bias of one quantity in percent, with its standard error.
+struct QuantityBias {
+    /// Short name, for a heading.
+    std::string name;
+    double percent = 0, error = 0;
+    /// True if the errors have reached their plateau.
+    bool known = false;
+    /// True if the bias and its error are below 1 %.
     bool allowed() const;
-    /// True if both stay below 1 % even with two standard errors more.
+    /// True if the bias stays below 1 % even with two standard errors more.
     bool shown() const;
-    /// True if one is above 1 % even with two standard errors less.
+    /// True if the bias is above 1 % even with two standard errors less.
+    bool refuted() const;
+};
+
+/// Biases of a row. Those of means are relative to the same method's smallest step: of the radius
+/// of gyration and, of dense systems, of what describes all chains. An energy's bias is relative to
+/// the sum of the magnitudes of all energies. The bias of the configurational temperature is
+/// relative to that of the thermostat.
+struct SamplingBias {
+    /// The radius of gyration, the configurational temperature, then all of SamplingRow::together.
+    /// Biases of means are zero for the smallest step, which is the reference; all are NaN if a row
+    /// is not VALID.
+    std::vector<QuantityBias> of;
+    bool is_reference = false;
+    QuantityBias const& gyration() const { return of[0]; }
+    QuantityBias const& temperature() const { return of[1]; }
+    bool allowed() const;
+    bool shown() const;
+    /// True if one of the biases is refuted.
     bool refuted() const;
     /// Returns "reference", "shown", "not contradicted", "no", "no reference", or "errors too large
     /// to tell".
@@ -58,7 +74,6 @@ struct SamplingDifference {
     SamplingRow const *of = nullptr, *less = nullptr;
     Difference gyration, end_to_end, cosine;
 };
-/// Each method less bonds, and constraints less rigid, at the methods' smallest steps; where those
 /// Returns the differences of each method from bonds, and of constraints from rigid, at the
 /// methods' smallest steps if those rows are VALID.
 std::vector<SamplingDifference> differences_of(std::vector<SamplingMethodVerdict> const&);

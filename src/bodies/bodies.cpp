@@ -57,8 +57,8 @@ void append(BodyArrays& bodies, JointEntry const& entry) {
     bodies.damping.push_back(entry.damping);
     bodies.rest.push_back(entry.rest);
     if (floats(entry.type)) {
-        bodies.free_position = entry.position;
-        bodies.free_velocity = entry.velocity;
+        bodies.free_base.position = entry.position;
+        bodies.free_base.velocity = entry.velocity;
     }
     if (entry.motion.empty()) return;
     DrivenJoint driven;

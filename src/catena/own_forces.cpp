@@ -62,12 +62,12 @@ CarriedBeads points_of(LinkedArrays const& linked) {
 std::pair<std::int64_t, std::int64_t> points_of(ChainGroup const& group, std::int64_t k) {
     if (group.beads) return {k, 1};
     auto const i = static_cast<std::size_t>(k);
-    return {group.bead_offset[i], group.bead_offset[i + 1] - group.bead_offset[i]};
+    return {group.carried.offset[i], group.carried.offset[i + 1] - group.carried.offset[i]};
 }
 
 /// Distance of the point on an axis from the centre of mass, given the body's first point.
 double arm_of(ChainGroup const& group, std::int64_t first, int axis) {
-    return group.bead_place[static_cast<std::size_t>(first + 1 + axis)][axis];
+    return group.carried.place[static_cast<std::size_t>(first + 1 + axis)][axis];
 }
 
 /// Body axes in W, from the positions of a body's points.

@@ -40,7 +40,7 @@ Mat3 joint_axes(JointType type, Vec3 const& axis, Vec3 const& first_axis) {
     return columns(p, z.cross(p).normalized(), axis);
 }
 
-/// Returns {c, s, rate, order}, see ChainGroup::screw.
+/// Returns {c, s, rate, order}, see LocalJoints::screw.
 Vector<double, 4> screw_of(JointType type, double pitch) {
     Vec3 const s = with_joint(type, [&](auto model) { return decltype(model)::screw(pitch); });
     return {{s[0], s[1], s[2], static_cast<double>(order_of(type))}};
@@ -92,16 +92,16 @@ int smallest_directions(ChainSpec const& spec) {
 
 /// Sets the arrays of bead k.
 void fill_bead(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
-    group.mass.set(k, {{spec.beads.mass[body]}});
-    group.inverse_mass.set(k, {{1.0 / spec.beads.mass[body]}});
-    group.length.set(k, {{spec.beads.length[body]}});
+    group.bodies.mass.set(k, {{spec.beads.mass[body]}});
+    group.bodies.inverse_mass.set(k, {{1.0 / spec.beads.mass[body]}});
+    group.joints.length.set(k, {{spec.beads.length[body]}});
 }
 
 void fill_inertia(ChainGroup& group, Sym3 const& inertia, std::int64_t k) {
     Vector<double, 6> v;
     for (int i = 0; i < 6; ++i) v[i] = inertia.data[i];
-    group.inertia.set(k, v);
-    group.inverse_inertia.set(k, inverse(inertia));
+    group.bodies.inertia.set(k, v);
+    group.bodies.inverse_inertia.set(k, inverse(inertia));
 }
 
 /// Replaces the inverse inertia by a a^T / (a . J a): bodies of planar chains rotate about the axis
@@ -111,69 +111,71 @@ void keep_axis_alone(ChainGroup& group, Sym3 const& inertia, Vec3 const& axis, s
     Vector<double, 6> v;
     for (int i = 0, at = 0; i < 3; ++i)
         for (int j = 0; j <= i; ++j) v[at++] = axis[i] * axis[j] / about;
-    group.inverse_inertia.set(k, v);
+    group.bodies.inverse_inertia.set(k, v);
 }
 
 /// Sets the arrays of rigid body k.
 void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
     BodyArrays const& b = spec.bodies;
-    group.mass.set(k, {{b.mass[body]}});
-    group.inverse_mass.set(k, {{1.0 / b.mass[body]}});
+    group.bodies.mass.set(k, {{b.mass[body]}});
+    group.bodies.inverse_mass.set(k, {{1.0 / b.mass[body]}});
     fill_inertia(group, b.inertia[body], k);
     if (group.planar) keep_axis_alone(group, b.inertia[body], b.axis[body], k);
     auto const axes = [&](std::int64_t joint) {
         bool const two = has_two_axes(b.joint[joint]);
         return joint_axes(b.joint[joint], b.axis[joint], two ? b.first_axis[joint] : Vec3::zero());
     };
-    group.r1.set(k, -b.com[body]);
-    group.axes1.set(k, kept_axes(axes(body)));
+    group.bodies.r1.set(k, -b.com[body]);
+    group.bodies.axes1.set(k, kept_axes(axes(body)));
     Quat const rotation = to_quaternion(b.rotation[body]);
-    group.joint_rotation.set(k, {{rotation.w, rotation.x, rotation.y, rotation.z}});
-    group.joint_translation.set(k, b.translation[body]);
+    group.joints.rotation.set(k, {{rotation.w, rotation.x, rotation.y, rotation.z}});
+    group.joints.translation.set(k, b.translation[body]);
     // The last body with a free tip is treated as the one before, so that alike bodies have alike
     // entries.
     std::int64_t const inboard = body + 1 < static_cast<std::int64_t>(b.size()) ? body : body - 1;
-    group.r2.set(k, inboard < 0 ? Vec3::zero() : b.translation[inboard + 1] - b.com[inboard]);
+    group.bodies.r2.set(k,
+                        inboard < 0 ? Vec3::zero() : b.translation[inboard + 1] - b.com[inboard]);
     // The axes are computed as in JointsView::meeting(), so that axes that do not move have the
     // same bits there.
     auto const meeting = [&](std::int64_t joint) {
         return to_matrix(to_quaternion(b.rotation[joint])) * axes_of(kept_axes(axes(joint)));
     };
-    group.axes2.set(k, kept_axes(inboard < 0 ? Mat3::identity() : meeting(inboard + 1)));
-    if (group.has_universal && turns_twice(b.joint[body]))
-        group.first_axis.set(k, b.first_axis[body]);
-    if (!group.has_screws) return;
+    group.bodies.axes2.set(k, kept_axes(inboard < 0 ? Mat3::identity() : meeting(inboard + 1)));
+    if (group.joints.has_universal && turns_twice(b.joint[body]))
+        group.joints.first_axis.set(k, b.first_axis[body]);
+    if (!group.joints.has_screws) return;
     bool const closing =
         body == 0 && spec.is_ring();  // a ring's first body has no other inboard joint
     if (closing)
-        group.screw.set(k, screw_of(spec.tip_joint.type, spec.tip_joint.pitch));
+        group.joints.screw.set(k, screw_of(spec.tip_joint.type, spec.tip_joint.pitch));
     else
-        group.screw.set(k, screw_of(b.joint[body], has_pitch(b.joint[body]) ? b.pitch[body] : 0));
+        group.joints.screw.set(
+            k, screw_of(b.joint[body], has_pitch(b.joint[body]) ? b.pitch[body] : 0));
 }
 
 /// Sets the arrays of body k of a linked chain.
 void fill_linked(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
     LinkedArrays const& b = spec.linked;
-    group.mass.set(k, {{b.mass[body]}});
-    group.inverse_mass.set(k, {{1.0 / b.mass[body]}});
+    group.bodies.mass.set(k, {{b.mass[body]}});
+    group.bodies.inverse_mass.set(k, {{1.0 / b.mass[body]}});
     if (!b.is_bead(static_cast<std::size_t>(body)))
         fill_inertia(group, b.inertia[body], k);  // a bead's inertia stays zero
-    group.r1.set(k, b.inboard[body]);
-    group.r2.set(k, b.outboard[body]);
-    group.length.set(k, {{b.length[body]}});
+    group.bodies.r1.set(k, b.inboard[body]);
+    group.bodies.r2.set(k, b.outboard[body]);
+    group.joints.length.set(k, {{b.length[body]}});
 }
 
 /// Sets the beads that bodies carry, if any chain of the group carries some.
 void fill_carried(ChainGroup& group, Scene const& scene) {
     auto const carried_of = [&](int chain) -> CarriedBeads const& {
-        return scene.chains[group.chain[chain]].carried();
+        return scene.chains[group.chains[chain].in_scene].carried();
     };
     bool any = false;
-    for (std::size_t chain = 0; chain < group.chain.size(); ++chain)
+    for (std::size_t chain = 0; chain < group.chains.size(); ++chain)
         any = any || carried_of(static_cast<int>(chain)).size() > 0;
     if (!any) return;
-    group.carried_in_scene = true;
-    group.bead_offset.push_back(0);
+    group.carried.in_scene = true;
+    group.carried.offset.push_back(0);
     for (dca::Piece const& piece : group.pieces) {
         CarriedBeads const& carried = carried_of(piece.chain);
         for (std::int64_t body = piece.body; body < piece.body + piece.count; ++body) {
@@ -181,10 +183,11 @@ void fill_carried(ChainGroup& group, Scene const& scene) {
                  carried.size() > 0 && i < carried.offset[body + 1]; ++i) {
                 Vec3 const place = carried.position[static_cast<std::size_t>(i)];
                 // Joint chains give the position from the body's origin, the inboard joint.
-                group.bead_place.push_back(
-                    group.linked ? place : place + group.r1[piece.local + body - piece.body]);
+                group.carried.place.push_back(
+                    group.linked ? place
+                                 : place + group.bodies.r1[piece.local + body - piece.body]);
             }
-            group.bead_offset.push_back(static_cast<std::int64_t>(group.bead_place.size()));
+            group.carried.offset.push_back(static_cast<std::int64_t>(group.carried.place.size()));
         }
     }
 }
@@ -193,13 +196,13 @@ void fill_carried(ChainGroup& group, Scene const& scene) {
 void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
     TipJoint const& tip = spec.tip_joint;
     LocalTip const local = local_tip(group, spec, k);
-    group.jointed_tip[k] = static_cast<std::int32_t>(group.tips.size());
+    group.ends.jointed_tip[k] = static_cast<std::int32_t>(group.ends.tips.size());
     if (!group.beads && !group.linked) {
-        group.r2.set(k, tip.translation - spec.bodies.com.back());
-        group.axes2.set(k, kept_axes(tip.rotation * local.axes));
+        group.bodies.r2.set(k, tip.translation - spec.bodies.com.back());
+        group.bodies.axes2.set(k, kept_axes(tip.rotation * local.axes));
     }
-    group.tips.push_back(local);
-    group.tip_screw.push_back(local.screw);
+    group.ends.tips.push_back(local);
+    group.ends.tip_screw.push_back(local.screw);
 }
 
 /// Number of directions of the group's handles.
@@ -211,75 +214,76 @@ int directions_of(ChainGroup const& group) {
 /// Allocates the arrays that the group's kind needs.
 void allocate(ChainGroup& group) {
     std::int64_t const n = group.size;
-    group.is_first.assign(n, 0);
-    group.is_last.assign(n, 0);
-    group.joint.assign(n, FreeJoint::type);
-    group.mass = Field<1>(n);
-    group.inverse_mass = Field<1>(n);
-    if (group.beads || group.linked) group.length = Field<1>(group.link_entries());
+    group.ends.is_first.assign(n, 0);
+    group.ends.is_last.assign(n, 0);
+    group.joints.type.assign(n, FreeJoint::type);
+    group.bodies.mass = Field<1>(n);
+    group.bodies.inverse_mass = Field<1>(n);
+    if (group.beads || group.linked) group.joints.length = Field<1>(group.link_entries());
     if (group.beads) return;
-    group.inertia = Field<6>(n);
-    group.inverse_inertia = Field<6>(n);
-    group.r1 = Field<3>(n);
-    group.r2 = Field<3>(n);
+    group.bodies.inertia = Field<6>(n);
+    group.bodies.inverse_inertia = Field<6>(n);
+    group.bodies.r1 = Field<3>(n);
+    group.bodies.r2 = Field<3>(n);
     if (group.linked) return;
-    group.axes1 = Field<6>(n);
-    group.axes2 = Field<6>(n);
-    group.joint_rotation = Field<4>(n);
-    group.joint_translation = Field<3>(n);
-    if (group.has_universal) group.first_axis = Field<3>(n);
-    if (group.has_screws) group.screw = Field<4>(n);
+    group.bodies.axes1 = Field<6>(n);
+    group.bodies.axes2 = Field<6>(n);
+    group.joints.rotation = Field<4>(n);
+    group.joints.translation = Field<3>(n);
+    if (group.joints.has_universal) group.joints.first_axis = Field<3>(n);
+    if (group.joints.has_screws) group.joints.screw = Field<4>(n);
 }
 
 /// Sets all arrays from the scene.
 void fill(ChainGroup& group, Scene const& scene, Executor const& executor) {
     each_local_body(group, executor, [&](dca::Piece const& piece, std::int64_t i) {
-        ChainSpec const& spec = scene.chains[group.chain[piece.chain]];
+        ChainSpec const& spec = scene.chains[group.chains[piece.chain].in_scene];
         std::int64_t const k = piece.local + i, body = piece.body + i;
-        group.joint[k] = joint_type(spec, body);
-        group.is_first[k] = body == 0;
-        group.is_last[k] = body + 1 == static_cast<std::int64_t>(spec.size());
+        group.joints.type[k] = joint_type(spec, body);
+        group.ends.is_first[k] = body == 0;
+        group.ends.is_last[k] = body + 1 == static_cast<std::int64_t>(spec.size());
         group.beads    ? fill_bead(group, spec, body, k)
         : group.linked ? fill_linked(group, spec, body, k)
                        : fill_body(group, spec, body, k);
     });
     for (dca::Piece const& piece : group.pieces) {
-        ChainSpec const& spec = scene.chains[group.chain[piece.chain]];
+        ChainSpec const& spec = scene.chains[group.chains[piece.chain].in_scene];
         for (DrivenJoint const& driven : spec.bodies.driven)
             if (driven.body >= piece.body && driven.body < piece.body + piece.count)
-                group.drives.push_back(
+                group.joints.drives.push_back(
                     {piece.local + driven.body - piece.body, driven.course[0], driven.course[1]});
         if (piece.ends && spec.tip == Tip::jointed)
             add_tip(group, spec, piece.local + piece.count - 1);
     }
 }
 
-/// Sets restricted_of_joint. This includes the joints at the boundaries of shared units, which the
-/// top eliminates, and the halo's joint among them.
+/// Sets LocalJoints::restricted. This includes the joints at the boundaries of shared units, which
+/// the top eliminates, and the halo's joint among them.
 void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
     dca::Schedule const& s = group.schedule;
     auto const restricted = [&](int chain, std::int64_t body) {
-        return static_cast<std::uint8_t>(std::min(
-            group.directions, restricted_at(scene.chains[group.chain[chain]], body, implicit)));
+        return static_cast<std::uint8_t>(
+            std::min(group.directions,
+                     restricted_at(scene.chains[group.chains[chain].in_scene], body, implicit)));
     };
-    group.restricted_of_joint.assign(static_cast<std::size_t>(s.joints), 0);
-    if (implicit) group.implicit_joint.assign(static_cast<std::size_t>(group.size), 0);
+    group.joints.restricted.assign(static_cast<std::size_t>(s.joints), 0);
+    if (implicit) group.joints.implicit.assign(static_cast<std::size_t>(group.size), 0);
     for (dca::Piece const& piece : group.pieces)
         for (std::int64_t i = 0; i < piece.count; ++i) {
-            group.restricted_of_joint[piece.local + i] = restricted(piece.chain, piece.body + i);
+            group.joints.restricted[piece.local + i] = restricted(piece.chain, piece.body + i);
             if (implicit)
-                group.implicit_joint[piece.local + i] =
-                    has_implicit_joint(scene.chains[group.chain[piece.chain]], piece.body + i);
+                group.joints.implicit[piece.local + i] = has_implicit_joint(
+                    scene.chains[group.chains[piece.chain].in_scene], piece.body + i);
         }
     if (!group.pieces.empty() && !group.pieces.back().ends) {
         dca::Piece const& last = group.pieces.back();
-        group.restricted_of_joint[s.halo] = restricted(last.chain, last.body + last.count);
+        group.joints.restricted[s.halo] = restricted(last.chain, last.body + last.count);
     }
     for (std::size_t i = 0; i < s.tip_chain.size(); ++i)
-        group.restricted_of_joint[s.first_tip() + static_cast<std::int64_t>(i)] =
+        group.joints.restricted[s.first_tip() + static_cast<std::int64_t>(i)] =
             restricted(s.tip_chain[i], group.partition.trees[s.tip_chain[i]].bodies);
     for (std::size_t i = 0; i < s.top_chain_of_joint.size(); ++i)
-        group.restricted_of_joint[s.first_top_joint() + static_cast<std::int64_t>(i)] =
+        group.joints.restricted[s.first_top_joint() + static_cast<std::int64_t>(i)] =
             restricted(s.top_chain_of_joint[i], s.top_body_of_joint[i]);
 }
 
@@ -287,9 +291,10 @@ void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
 void fill_crosslinks(ChainGroup& group, Scene const& scene) {
     for (std::size_t p = 0; p < group.pieces.size(); ++p) {
         dca::Piece const& piece = group.pieces[p];
-        for (CrossLink const& link : scene.chains[group.chain[piece.chain]].crosslinks)
-            group.crosslinks.push_back({piece.local + link.inboard, piece.local + link.outboard,
-                                        static_cast<std::int64_t>(p)});
+        for (CrossLink const& link : scene.chains[group.chains[piece.chain].in_scene].crosslinks)
+            group.branching.crosslinks.push_back({piece.local + link.inboard,
+                                                  piece.local + link.outboard,
+                                                  static_cast<std::int64_t>(p)});
     }
 }
 
@@ -297,33 +302,35 @@ void fill_crosslinks(ChainGroup& group, Scene const& scene) {
 void fill_crosslink_lengths(ChainGroup& group, Scene const& scene) {
     std::int64_t k = group.first_crosslink();
     for (dca::Piece const& piece : group.pieces)
-        for (CrossLink const& link : scene.chains[group.chain[piece.chain]].crosslinks)
-            group.length.set(k++, {{link.length}});
+        for (CrossLink const& link : scene.chains[group.chains[piece.chain].in_scene].crosslinks)
+            group.joints.length.set(k++, {{link.length}});
 }
 
 /// Sets the counts of the paths on all ranks. Collective.
 void count_branches(ChainGroup& group, Communicator const& communicator) {
-    dca::BranchCounts const own = group.branches.counts();
+    dca::BranchCounts const own = group.branching.paths.counts();
     auto const largest = [&](std::int64_t value) {
         return static_cast<std::int64_t>(communicator.max(static_cast<double>(value)));
     };
-    group.branches.of_all_ranks = {communicator.sum(own.paths), communicator.sum(own.runs),
-                                   largest(own.phases), largest(own.levels), largest(own.depth)};
+    group.branching.paths.of_all_ranks = {communicator.sum(own.paths), communicator.sum(own.runs),
+                                          largest(own.phases), largest(own.levels),
+                                          largest(own.depth)};
 }
 
 /// Sets the inboard bodies of branched or cross-linked chains and cuts the chains into paths.
 /// Collective.
 void fill_branches(ChainGroup& group, Scene const& scene, bool pairwise,
                    Communicator const& communicator) {
-    group.inboard.assign(static_cast<std::size_t>(group.size), -1);
+    group.branching.inboard.assign(static_cast<std::size_t>(group.size), -1);
     for (dca::Piece const& piece : group.pieces) {
-        std::vector<std::int64_t> const& parent = scene.chains[group.chain[piece.chain]].parent;
+        std::vector<std::int64_t> const& parent =
+            scene.chains[group.chains[piece.chain].in_scene].parent;
         for (std::int64_t i = 1; i < piece.count; ++i)
-            group.inboard[piece.local + i] =
+            group.branching.inboard[piece.local + i] =
                 piece.local +
                 static_cast<std::int64_t>(scene::inboard_of(parent, static_cast<std::size_t>(i)));
     }
-    group.branches = dca::Branches(group.inboard, pairwise);
+    group.branching.paths = dca::Branches(group.branching.inboard, pairwise);
     count_branches(group, communicator);
     group.schedule.runs.clear();
     group.schedule.levels.clear();
@@ -336,8 +343,8 @@ void find_neighbours(ChainGroup& group, int rank) {
     dca::Partition const& p = group.partition;
     std::int64_t const begin = p.first_of_rank[rank], end = p.first_of_rank[rank + 1];
     if (begin == end) return;
-    if (!group.pieces.front().starts) group.neighbour_inboard = p.owner(begin - 1);
-    if (!group.pieces.back().ends) group.neighbour_outboard = p.owner(end);
+    if (!group.pieces.front().starts) group.neighbours.inboard = p.owner(begin - 1);
+    if (!group.pieces.back().ends) group.neighbours.outboard = p.owner(end);
 }
 
 /// Finds the rings with an end on this rank.
@@ -349,11 +356,11 @@ void find_rings(ChainGroup& group, int rank) {
                            begin = p.first_of_rank[rank];
         int const owner = p.owner(first), other = p.owner(last);
         if (rank != owner && rank != other) continue;
-        group.rings.push_back({chain, rank == owner ? first - begin : -1,
-                               rank == other ? last - begin : -1,
-                               owner == other  ? -1
-                               : rank == owner ? other
-                                               : owner});
+        group.ends.rings.push_back({chain, rank == owner ? first - begin : -1,
+                                    rank == other ? last - begin : -1,
+                                    owner == other  ? -1
+                                    : rank == owner ? other
+                                                    : owner});
     }
 }
 
@@ -365,8 +372,8 @@ dca::TipTo tip_of(ChainSpec const& spec) {
 /// Records which kinds of joints a chain has.
 void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
     auto const look = [&](JointType type) {
-        group.has_universal = group.has_universal || turns_twice(type);
-        group.has_screws = group.has_screws || slides(type);
+        group.joints.has_universal = group.joints.has_universal || turns_twice(type);
+        group.joints.has_screws = group.joints.has_screws || slides(type);
     };
     for (JointType const type : spec.bodies.joint) look(type);
     if (spec.bodies.size() > 0 && spec.tip == Tip::jointed) look(spec.tip_joint.type);
@@ -390,7 +397,6 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.linked = any.is_linked();
     group.axes = group.beads || group.linked ? Axes::world : axes;
     group.handles = handles;
-    group.chain = chains;
     group.smallest_directions = 1;
     std::vector<std::int64_t> lengths;
     std::vector<dca::TipTo> tips;
@@ -400,9 +406,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     for (int const chain : chains) {
         ChainSpec const& spec = scene.chains[chain];
         lengths.push_back(static_cast<std::int64_t>(spec.size()));
-        group.name.push_back(spec.name);
-        group.base.push_back(spec.base);
-        group.first_in_scene.push_back(first_in_scene[chain]);
+        group.chains.push_back({chain, spec.name, spec.base, first_in_scene[chain]});
         tips.push_back(tip_of(spec));
         look_at_joints(group, spec);
     }
@@ -416,12 +420,14 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
-    group.revolute = !group.beads && !group.linked && group.directions == 5 && !group.has_screws &&
+    group.revolute = !group.beads && !group.linked && group.directions == 5 &&
+                     !group.joints.has_screws &&
                      std::all_of(chains.begin(), chains.end(),
                                  [&](int chain) { return is_revolute(scene.chains[chain]); });
-    group.tips_in_scene = std::any_of(tips.begin(), tips.end(),
-                                      [](dca::TipTo t) { return t != dca::TipTo::nothing; });
-    if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
+    group.ends.tips_in_scene = std::any_of(tips.begin(), tips.end(),
+                                           [](dca::TipTo t) { return t != dca::TipTo::nothing; });
+    if (group.ends.tips_in_scene)
+        group.ends.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
     if (by_paths) fill_crosslinks(group, scene);
     allocate(group);
     fill(group, scene, options.executor);
@@ -431,7 +437,8 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     fill_restricted(group, scene, options.implicit);
     find_neighbours(group, communicator.rank());
     find_rings(group, communicator.rank());
-    if (group.has_screws) exchange_from_outboard(communicator, group, group.screw.view());
+    if (group.joints.has_screws)
+        exchange_from_outboard(communicator, group, group.joints.screw.view());
     return group;
 }
 
@@ -448,9 +455,10 @@ int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
 }  // namespace
 
 int ChainGroup::restricted(std::int64_t k) const {
-    return std::min(directions, is_implicit(k) || (!drives.empty() && is_driven(k))
-                                    ? 6
-                                    : restricted_by(joint[static_cast<std::size_t>(k)]));
+    return std::min(directions,
+                    joints.is_implicit(k) || (!joints.drives.empty() && joints.is_driven(k))
+                        ? 6
+                        : restricted_by(joints.type[static_cast<std::size_t>(k)]));
 }
 
 LocalTip local_tip(ChainGroup const& group, ChainSpec const& spec, std::int64_t last) {

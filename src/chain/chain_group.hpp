@@ -5,16 +5,14 @@
 
 #include <cstdint>
 #include <memory>
-#include <span>
-#include <string>
 #include <vector>
 
 #include "chain/group_view.hpp"
+#include "chain/local_model.hpp"
 #include "math/executor.hpp"
 #include "mpi/collectives.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
-#include "tree/branches.hpp"
 #include "tree/load_balance.hpp"
 #include "tree/tree.hpp"
 
@@ -23,42 +21,6 @@ namespace catena {
 /// Axes of a handle's directions. joint: axes of the joint frame (state in joint coordinates).
 /// world: ground axes W (absolute coordinates).
 enum class Axes { joint, world };
-
-/// Joint from a chain's last body to the ground or to its first body, on the rank that owns the
-/// last body.
-struct LocalTip {
-    std::int64_t body = 0;  // local index of the chain's last body
-    TipJoint joint;
-    Mat3 axes;                // axes in M, see ChainGroup::axes1
-    Vector<double, 4> screw;  // see ChainGroup::screw
-    /// Number of constrained directions.
-    int restricted = 0;
-};
-
-/// Ring: a chain closed on itself, of which this rank owns at least one end.
-struct LocalRing {
-    int chain = 0;  // index in the group
-    /// Local indices of the chain's first and last body; -1 if another rank owns it.
-    std::int64_t first = -1, last = -1;
-    /// Rank that owns the other end; -1: this rank owns both.
-    int neighbour = -1;
-    /// True if this rank owns both ends.
-    bool is_whole() const { return neighbour < 0; }
-};
-
-/// Rigid link between two beads of one chain, beside the links to their inboard beads.
-struct LocalCrossLink {
-    /// Local indices of the beads.
-    std::int64_t inboard = 0, outboard = 0;
-    /// Index of the chain's piece in ChainGroup::pieces.
-    std::int64_t piece = 0;
-};
-
-/// Joint of this rank with prescribed motion.
-struct LocalDrive {
-    std::int64_t body = 0;           // local index of the joint's outboard body
-    PrescribedMotion first, second;  // motion of each coordinate; `second` if there are two
-};
 
 /// Chains of one handle kind. Two bodies meet at a joint in its meeting frame M. M is the joint
 /// frame J, with two exceptions. For a universal joint, M is J rotated about the first axis; for a
@@ -72,100 +34,26 @@ struct ChainGroup {
     /// True if all joints are revolute with parallel axes; then the two directions of the plane
     /// suffice.
     bool planar = false;
+    /// True for bodies on projected handles whose joints are revolute, except for the first joints
+    /// of chains; tips are free.
+    bool revolute = false;
     Axes axes = Axes::joint;
     Handles handles = Handles::projected;
     int directions = 6;           // K, the number of directions of a handle
     int smallest_directions = 6;  // number of directions that would suffice
-    /// True if some joint is universal, or some joint translates.
-    bool has_universal = false, has_screws = false;
-    /// True for bodies on projected handles whose joints are revolute, except for the first joints
-    /// of chains; tips are free.
-    bool revolute = false;
-    /// 1 for each local body whose inboard joint's springs and dampers are implicit: they enter the
-    /// matrices. Empty if none is.
-    std::vector<std::uint8_t> implicit_joint;
-    /// Index in the scene of each chain of the group.
-    std::vector<int> chain;
-    std::vector<std::string> name;
-    std::vector<Base> base;  // one per chain
-    /// Scene-wide index of each chain's first body (bodies counted over all chains of the scene).
-    std::vector<std::int64_t> first_in_scene;
+    std::vector<GroupChain> chains;
     dca::Partition partition;
     std::vector<dca::Piece> pieces;  // pieces of this rank
     dca::Schedule schedule;
-    /// Inboard body of each local body, -1 for first bodies; empty unless the chains are branched
-    /// or cross-linked.
-    std::vector<std::int64_t> inboard;
-    /// Paths of branched or cross-linked chains, which replace the runs, merges and roots of
-    /// `schedule`. A rank owns all bodies of such a chain, or none.
-    dca::Branches branches;
-    bool is_branched() const { return branches.of_all_ranks.paths > 0; }
-    /// Cross-links, chain by chain. Arrays over links hold that of `crosslinks[c]` at
-    /// first_crosslink() + c.
-    std::vector<LocalCrossLink> crosslinks;
-    std::int64_t first_crosslink() const { return size + 1; }
-    /// Number of entries of arrays over links: those of the bodies, one of the halo, and those of
-    /// cross-links, if there are any.
-    std::int64_t link_entries() const {
-        return crosslinks.empty() ? size : first_crosslink() + std::ssize(crosslinks);
-    }
-
-    // Arrays over local bodies.
     /// Number of local bodies.
     std::int64_t size = 0;
-    /// 1 for the first and last bodies of chains.
-    std::vector<std::uint8_t> is_first, is_last;
-    /// True if some chain of the group has a jointed tip, on any rank.
-    bool tips_in_scene = false;
-    /// Index in `tips` of the jointed tip of each last body, else -1; empty if no chain has one.
-    std::vector<std::int32_t> jointed_tip;
-    /// Type of each inboard joint.
-    std::vector<JointType> joint;
-    /// Mass, amu, and its inverse.
-    Field<1> mass, inverse_mass;
-    // Groups with links.
-    /// Length of the inboard link, nm; [link_entries()].
-    Field<1> length;
-    // Groups with rigid bodies.
-    /// Inertia about the centre of mass and its inverse, B (lower triangle: xx yx yy zx zy zz), amu
-    /// nm^2. Planar groups: the inverse about the axis.
-    Field<6> inertia, inverse_inertia;
-    /// Inboard and outboard joint relative to the centre of mass, B, nm. A sliding outboard joint
-    /// is at q = 0. If the tip of a last body is free, its r2 and axes2 are set as for the body
-    /// before.
-    Field<3> r1, r2;
-    /// Axes of the inboard joint in M (kept_axes()). The same components taken in B are axes that
-    /// rotate with the joint.
-    Field<6> axes1;
-    /// Axes of the outboard joint in B (universal: at q = 0).
-    Field<6> axes2;
-    /// Quaternion of the inboard joint's frame J in the inboard body's axes (first body: W).
-    Field<4> joint_rotation;
-    /// Origin of J relative to the inboard body's origin, in that body's axes (first body: W), nm.
-    Field<3> joint_translation;
-    /// First axis of a universal joint, J; empty if no joint is universal.
-    Field<3> first_axis;
-    /// {c, s, rate, order}. A joint with a screw rotates by c rate q about its axis and slides by s
-    /// rate q along it. `order` is JointDefaults::order. Empty if no joint translates.
-    Field<4> screw;
-    /// True if some body of the group carries beads, on any rank.
-    bool carried_in_scene = false;
-    /// Offset of the beads that body k carries; [size + 1]. Empty if no body carries beads.
-    std::vector<std::int64_t> bead_offset;
-    /// Position of each carried bead relative to the centre of mass, B, nm.
-    std::vector<Vec3> bead_place;
-    /// Joints with prescribed motion, ascending.
-    std::vector<LocalDrive> drives;
-    /// Jointed tips, ascending.
-    std::vector<LocalTip> tips;
-    /// Screws of `tips`, as `screw`.
-    std::vector<Vector<double, 4>> tip_screw;
-    /// Rings with an end on this rank.
-    std::vector<LocalRing> rings;
+    LocalEnds ends;
+    LocalJoints joints;
+    LocalBodies bodies;
+    Branching branching;
+    LocalBeads carried;
+    NeighbourRanks neighbours;
 
-    /// Ranks that own the bodies before the first and after the last local body, if a chain
-    /// continues there; else -1.
-    int neighbour_inboard = -1, neighbour_outboard = -1;
     /// View of the arrays in host memory.
     GroupView view() const;
     /// Masses and inertias that sweeps read: those of articulated handles and of runs on revolute
@@ -176,29 +64,14 @@ struct ChainGroup {
     bool sweeps_read_inertias() const;
     /// Name of the smallest handle kind: link | planar | spherical | universal | revolute | full.
     char const* kind() const;
-    /// Number of constrained directions of joint k in storage numbering. Entries include the halo,
-    /// tips and the tops of shared chains (schedule.joints entries; `none`: 0).
-    std::vector<std::uint8_t> restricted_of_joint;
-    /// True if local body k is the last body of a chain with a jointed tip.
-    bool has_jointed_tip(std::int64_t k) const {
-        return !jointed_tip.empty() && jointed_tip[static_cast<std::size_t>(k)] >= 0;
-    }
-    /// Index in `tips` of body k's tip. Precondition: has_jointed_tip(k).
-    std::size_t tip_index(std::int64_t k) const {
-        return static_cast<std::size_t>(jointed_tip[static_cast<std::size_t>(k)]);
-    }
-    LocalTip const& tip_of(std::int64_t k) const { return tips[tip_index(k)]; }
-    /// Number of beads that the local bodies carry.
-    std::int64_t carried_beads() const { return bead_offset.empty() ? 0 : bead_offset.back(); }
-    /// True if some chain of the group has a jointed tip, on any rank.
-    bool has_tips() const { return tips_in_scene; }
-    /// True if handle 2 of a body depends on the state of the joint there.
-    bool moving_meeting() const { return has_universal || has_screws; }
-    /// True if the inboard joint of local body k has prescribed motion.
-    bool is_driven(std::int64_t k) const;
-    /// True if the springs and dampers of body k's inboard joint enter the matrices.
-    bool is_implicit(std::int64_t k) const {
-        return !implicit_joint.empty() && implicit_joint[static_cast<std::size_t>(k)] != 0;
+    bool is_branched() const { return branching.paths.of_all_ranks.paths > 0; }
+    /// Entry of the first cross-link in arrays over links.
+    std::int64_t first_crosslink() const { return size + 1; }
+    /// Number of entries of arrays over links: those of the bodies, one of the halo, and those of
+    /// cross-links, if there are any.
+    std::int64_t link_entries() const {
+        return branching.crosslinks.empty() ? size
+                                            : first_crosslink() + std::ssize(branching.crosslinks);
     }
     /// Number of constrained directions of local body k's inboard joint, at most `directions`.
     /// Driven and implicit joints count as constrained in all directions.
@@ -281,7 +154,7 @@ struct HostAccess {
 /// Exchange that fills halo entry `size` of a field with the outboard neighbour's first body.
 template <int D>
 BodyExchange<D> from_outboard(ChainGroup const& group, View<D> field) {
-    return {field, 0, group.neighbour_inboard, field, group.size, group.neighbour_outboard};
+    return {field, 0, group.neighbours.inboard, field, group.size, group.neighbours.outboard};
 }
 /// Fills halo entry `size` of a field with the outboard neighbour's first body. `access` reads and
 /// writes bodies of the field. Collective among neighbours.
@@ -295,8 +168,8 @@ void exchange_from_outboard(Communicator const& communicator, ChainGroup const& 
 template <int D, class Access = HostAccess>
 void exchange_from_inboard(Communicator const& communicator, ChainGroup const& group, View<D> field,
                            Access const& access = {}) {
-    access.exchange(communicator, BodyExchange<D>{field, group.size - 1, group.neighbour_outboard,
-                                                  field, -1, group.neighbour_inboard});
+    access.exchange(communicator, BodyExchange<D>{field, group.size - 1, group.neighbours.outboard,
+                                                  field, -1, group.neighbours.inboard});
 }
 
 /// Canonical unit of the tree on this rank. Chain-wide compositions proceed unit by unit,

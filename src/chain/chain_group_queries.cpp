@@ -10,7 +10,7 @@ char const* ChainGroup::kind() const {
     return scene::name_of(static_cast<scene::HandleKind>(smallest_directions - 1));
 }
 
-bool ChainGroup::is_driven(std::int64_t k) const {
+bool LocalJoints::is_driven(std::int64_t k) const {
     auto const found =
         std::lower_bound(drives.begin(), drives.end(), k,
                          [](LocalDrive const& d, std::int64_t body) { return d.body < body; });
@@ -32,38 +32,42 @@ std::size_t ChainGroup::index_of_piece(std::int64_t k) const {
 
 std::int64_t ChainGroup::scene_index(std::int64_t k) const {
     dca::Piece const& piece = pieces[index_of_piece(k)];
-    return first_in_scene[piece.chain] + piece.body + (k - piece.local);
+    return chains[static_cast<std::size_t>(piece.chain)].first_body + piece.body +
+           (k - piece.local);
 }
 
 GroupView ChainGroup::view() const {
     return {size,
-            is_first.data(),
-            is_last.data(),
-            jointed_tip.empty() ? nullptr : jointed_tip.data(),
-            tip_screw.data(),
-            inverse_mass.view(),
-            inverse_inertia.view(),
-            r1.view(),
-            r2.view(),
-            axes1.view(),
-            axes2.view(),
-            screw.view(),
+            ends.is_first.data(),
+            ends.is_last.data(),
+            ends.jointed_tip.empty() ? nullptr : ends.jointed_tip.data(),
+            ends.tip_screw.data(),
+            bodies.inverse_mass.view(),
+            bodies.inverse_inertia.view(),
+            bodies.r1.view(),
+            bodies.r2.view(),
+            bodies.axes1.view(),
+            bodies.axes2.view(),
+            joints.screw.view(),
             mass_of_sweeps().view(),
             inertia_of_sweeps().view()};
 }
 Field<1> const& ChainGroup::mass_of_sweeps() const {
     static Field<1> const none;
-    return sweeps_read_inertias() ? mass : none;
+    return sweeps_read_inertias() ? bodies.mass : none;
 }
 Field<6> const& ChainGroup::inertia_of_sweeps() const {
     static Field<6> const none;
-    return sweeps_read_inertias() ? inertia : none;
+    return sweeps_read_inertias() ? bodies.inertia : none;
 }
 bool ChainGroup::sweeps_read_inertias() const {
-    return handles == Handles::articulated || (!beads && !linked && directions == 5 && !has_screws);
+    return handles == Handles::articulated ||
+           (!beads && !linked && directions == 5 && !joints.has_screws);
 }
 
-int ChainGroup::scene_chain(std::int64_t k) const { return chain[pieces[index_of_piece(k)].chain]; }
+int ChainGroup::scene_chain(std::int64_t k) const {
+    return chains[static_cast<std::size_t>(pieces[index_of_piece(k)].chain)].in_scene;
+}
 
 std::vector<LocalUnit> local_units(ChainGroup const& group) {
     std::vector<LocalUnit> units;

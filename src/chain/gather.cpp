@@ -17,7 +17,7 @@ void gather_to_scene(Communicator const& communicator, ChainGroup const& group, 
     for (int chain = 0; chain < group.partition.chains(); ++chain) {
         auto const begin = all.begin() + group.partition.first_of_chain[chain] * width;
         auto const end = all.begin() + group.partition.first_of_chain[chain + 1] * width;
-        std::copy(begin, end, in_scene_order.begin() + group.first_in_scene[chain] * width);
+        std::copy(begin, end, in_scene_order.begin() + group.chains[chain].first_body * width);
     }
 }
 

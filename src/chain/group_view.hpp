@@ -7,11 +7,11 @@
 
 namespace catena {
 
-/// Non-owning view of the arrays of a ChainGroup, with the same names and units.
+/// Non-owning view of the arrays of a ChainGroup that sweeps read, with the same names and units.
 struct GroupView {
     std::int64_t size = 0;
     std::uint8_t const *is_first = nullptr, *is_last = nullptr;  // first and last bodies of chains
-    /// ChainGroup::jointed_tip; null if no chain of the group has a jointed tip.
+    /// LocalEnds::jointed_tip; null if no chain of the group has a jointed tip.
     std::int32_t const* jointed_tip = nullptr;
     Vector<double, 4> const* tip_screw = nullptr;  // screw of each jointed tip
     ConstView<1> inverse_mass;

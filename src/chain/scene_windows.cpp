@@ -21,7 +21,7 @@ SceneWindows::SceneWindows(Communicator const& communicator,
             for (std::int64_t body = begin; body < end;) {
                 while (partition.first_of_rank[rank + 1] <= body) ++rank;
                 std::int64_t const next = std::min(end, partition.first_of_rank[rank + 1]);
-                std::int64_t const first = groups[g]->first_in_scene[chain] + body - begin;
+                std::int64_t const first = groups[g]->chains[chain].first_body + body - begin;
                 parts_.push_back(
                     {first, next - body, g, rank, body - partition.first_of_rank[rank]});
                 body = next;

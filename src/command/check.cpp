@@ -1,6 +1,8 @@
 // Implements `catena check`.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "command/commands.hpp"
 #include "console/long_task.hpp"
 #include "console/terminal.hpp"
@@ -9,6 +11,7 @@
 #include "observe/observables.hpp"
 #include "plan/describe.hpp"
 #include "plan/host_memory.hpp"
+#include "reader/force_notes.hpp"
 #include "start/concentrations.hpp"
 #include "start/start_relaxation.hpp"
 #include "start/start_report.hpp"
@@ -51,6 +54,19 @@ Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
     for (terms::TermCount const& each : loads_of(scene)) forces[each.name] = each.count;
     forces["openmm"] = openmm;
     return forces;
+}
+
+/// Tells of longer steps that sample the scene as well; empty if there are none.
+std::string step_advice(Scene const& scene) {
+    DynamicsSpec const& d = scene.dynamics;
+    bool const of_residues = scene.forces.openmm && !scene.forces.openmm->builder.empty() &&
+                             std::all_of(scene.chains.begin(), scene.chains.end(),
+                                         [](ChainSpec const& chain) { return chain.is_beads(); });
+    scene::ShownStep const shown = scene::shown_step(scene);
+    if (!d.given || d.integrator != Integrator::g_baoab || !of_residues || d.step >= shown.longest)
+        return {};
+    return fmt::format("up to {:.6g} ps sample {} within 1 % of shorter ones", shown.longest,
+                       shown.chains);
 }
 
 /// Returns the dynamics as JSON; null if the scene has none.
@@ -125,6 +141,8 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     for (std::size_t i = 0; i < openmm.size(); ++i) text.entry(i == 0 ? "OpenMM" : "", openmm[i]);
     text.heading("dynamics");
     text.entry("integrator", dynamics_text(scene));
+    if (std::string const advice = step_advice(scene); !advice.empty())
+        text.entry("longer steps", advice);
     if (limit) text.entry("longest stable step", catena::text_of(*limit, scene));
     text.heading("memory");
     text.entry(

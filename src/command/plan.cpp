@@ -71,7 +71,7 @@ struct TreeCounts {
 TreeCounts counts_of(ChainGroup const& group) {
     dca::ChainTree const& tree = longest_tree(group);
     if (!group.is_branched()) return {tree.runs, tree.levels(), tree.depth()};
-    dca::BranchCounts const& branched = group.branches.of_all_ranks;
+    dca::BranchCounts const& branched = group.branching.paths.of_all_ranks;
     return {branched.runs, branched.levels, branched.depth};
 }
 
@@ -85,8 +85,8 @@ std::string tree_text(ChainGroup const& group) {
                   "{} bodies in {} and {}: {} of up to {} bodies, then at most {} of "
                   "merges on a path",
                   group.partition.bodies(),
-                  counted(group.branches.of_all_ranks.paths, "path", "paths"),
-                  counted(group.branches.of_all_ranks.phases, "phase", "phases"),
+                  counted(group.branching.paths.of_all_ranks.paths, "path", "paths"),
+                  counted(group.branching.paths.of_all_ranks.phases, "phase", "phases"),
                   counted(counts.runs, "run", "runs"), tree.run_length,
                   counted(counts.levels, "level", "levels"))
             : fmt::format("{} bodies: {} of up to {} bodies, then {} of merges", tree.bodies,
@@ -102,8 +102,9 @@ struct CrossLinkCounts {
 };
 CrossLinkCounts crosslinks_of(ChainGroup const& group, Scene const& scene) {
     CrossLinkCounts counts;
-    for (int const chain : group.chain) {
-        std::size_t const own = scene.chains[static_cast<std::size_t>(chain)].crosslinks.size();
+    for (GroupChain const& chain : group.chains) {
+        std::size_t const own =
+            scene.chains[static_cast<std::size_t>(chain.in_scene)].crosslinks.size();
         counts.all += own;
         counts.most_of_a_chain = std::max(counts.most_of_a_chain, own);
     }

@@ -87,6 +87,8 @@ struct SamplingOptions {
     /// Scene file; empty for alpha-synuclein.
     std::string scene;
     std::int64_t copies = 71;
+    /// True to sample all chains of the scene in their box instead of copies that never meet.
+    bool dense = false;
     std::vector<std::string> methods{"rigid", "bonds", "constraints"};
     std::vector<double> steps{0.01};
     double duration = 1000, discard = 200, every = 1;

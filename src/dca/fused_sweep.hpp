@@ -20,7 +20,7 @@ struct Resting {
         int restricted;
     };
     Leaf leaf;
-    // Number of restricted directions of every joint (ChainGroup::restricted_of_joint).
+    // Number of restricted directions of every joint (LocalJoints::restricted).
     std::uint8_t const* restricted = nullptr;
     LoadsView loads;
 

@@ -16,7 +16,7 @@ class HostBlocks {
     /// Makes the blocks. Precondition: the group shares no chain with other ranks.
     explicit HostBlocks(ChainGroup const& group)
         : schedule_(group.schedule),
-          plan_(dca::plan_blocks(group.schedule, last_bodies(group.tips))) {
+          plan_(dca::plan_blocks(group.schedule, last_bodies(group.ends.tips))) {
         for (auto const& level : schedule_.levels)
             merges_.insert(merges_.end(), level.begin(), level.end());
     }

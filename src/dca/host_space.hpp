@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dca/host_blocks.hpp"
+#include "dca/host_trees.hpp"
 #include "dca/solver.hpp"
 #include "math/records.hpp"
 
@@ -27,10 +28,10 @@ class HostModel {
   public:
     explicit HostModel(ChainGroup const& group) : group_(group) {}
     GroupView view() const { return group_.view(); }
-    std::uint8_t const* restricted() const { return group_.restricted_of_joint.data(); }
+    std::uint8_t const* restricted() const { return group_.joints.restricted.data(); }
     /// Mass and inertia of bodies in joint coordinates, also where no sweep reads them.
-    ConstView<1> mass() const { return group_.mass.view(); }
-    ConstView<6> inertia() const { return group_.inertia.view(); }
+    ConstView<1> mass() const { return group_.bodies.mass.view(); }
+    ConstView<6> inertia() const { return group_.bodies.inertia.view(); }
 
   private:
     ChainGroup const& group_;
@@ -97,42 +98,9 @@ class HostSpace : public HostAccess {
       private:
         LongArray<T> records_;
     };
-    /// The items of a tree: runs, merges level by level, and roots. The items of one level are
-    /// independent of each other and are computed before the next level.
-    class Tree {
-      public:
-        Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
-             std::vector<dca::Root> const& roots, std::int64_t /*slots*/,
-             std::span<std::uint8_t const> /*restricted*/, dca::StageRecords const& /*records*/)
-            : runs_(runs), levels_(levels), roots_(roots) {}
-
-      private:
-        friend class HostSpace;
-        std::span<dca::Run const> runs_;
-        std::span<std::vector<dca::Merge> const> levels_;
-        std::span<dca::Root const> roots_;
-    };
-
-    /// The tree of a scan along the chains.
-    ///
-    /// of_run(run) is the value of a run; joined(inboard, outboard) combines the values of two
-    /// neighbours. whole(), set_whole(), before() and set_before() are indexed by slot.
-    ///
-    /// After climb(), whole() is defined for complete nodes: roots, and what other ranks need. It
-    /// stays valid until descend(). descend() reads before() in these slots and writes it in the
-    /// slots of the runs, or of the inputs of the lowest level. Other slots are unspecified.
-    class ScanTree {
-      public:
-        ScanTree(std::vector<dca::Run> const& runs,
-                 std::vector<std::vector<dca::Merge>> const& levels,
-                 std::vector<dca::Root> const& /*roots*/, std::int64_t /*slots*/)
-            : runs_(runs), levels_(levels) {}
-
-      private:
-        friend class HostSpace;
-        std::span<dca::Run const> runs_;
-        std::span<std::vector<dca::Merge> const> levels_;
-    };
+    /// Trees of sweeps and of scans.
+    using Tree = HostTree;
+    using ScanTree = HostScanTree;
 
     /// Blocks of the whole chains that the group has on this rank. A block has loops over its own
     /// bodies and tips, and sweeps over its own chains (host_blocks.hpp).

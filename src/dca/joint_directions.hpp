@@ -24,7 +24,7 @@ struct Screw {
     Real c, s;
     Real order = Real(usual_order);
 };
-/// Returns the screw of ChainGroup::screw.
+/// Returns the screw of LocalJoints::screw.
 template <class Real>
 CATENA_HD Screw<Real> as_screw(Vector<Real, 4> const& numbers) {
     return {numbers[0], numbers[1], numbers[3]};

@@ -28,7 +28,8 @@ auto with_absolute_leaf(ChainGroup const& group, Use const& use) {
 /// Selects the leaf with articulated handles, for bodies in joint coordinates.
 template <class Use>
 auto with_articulated_leaf(ChainGroup const& group, Use const& use) {
-    return group.has_screws ? use(Of<ArticulatedLeaf<true>>{}) : use(Of<ArticulatedLeaf<false>>{});
+    return group.joints.has_screws ? use(Of<ArticulatedLeaf<true>>{})
+                                   : use(Of<ArticulatedLeaf<false>>{});
 }
 
 /// Selects the leaf with floating handles, for bodies in joint coordinates.
@@ -37,7 +38,7 @@ auto with_joint_leaf(ChainGroup const& group, Use const& use) {
     return with_number<2, 6>(group.directions, [&](auto directions) {
         constexpr int K = decltype(directions)::value;
         if constexpr (K >= 5)  // Handles of joints that translate carry five directions or six.
-            if (group.has_screws) return use(Of<BodyLeaf<K, JointFrameHandles<K, true>>>{});
+            if (group.joints.has_screws) return use(Of<BodyLeaf<K, JointFrameHandles<K, true>>>{});
         return use(Of<BodyLeaf<K, JointFrameHandles<K, false>>>{});
     });
 }

@@ -29,7 +29,7 @@ void add_tree(ChainGroup const& group, Communicator const& communicator, SolverR
         report.run_length = std::max(report.run_length, tree.run_length);
         report.depth = std::max(report.depth, tree.depth());
     }
-    if (group.is_branched()) report.depth = group.branches.of_all_ranks.depth;
+    if (group.is_branched()) report.depth = group.branching.paths.of_all_ranks.depth;
 }
 
 void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
@@ -52,11 +52,11 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
     // The message recommends articulated handles where they exist: open chains in joint coordinates
     // without implicit springs.
     bool const open =
-        !group.beads && !group.linked && group.axes == Axes::joint && !group.has_tips();
-    bool const may = open && group.handles != Handles::articulated && group.implicit_joint.empty();
+        !group.beads && !group.linked && group.axes == Axes::joint && !group.ends.has_tips();
+    bool const may = open && group.handles != Handles::articulated && group.joints.implicit.empty();
     std::string const what =
         group.handles == Handles::articulated ? "an articulated inertia" : "the matrix of a joint";
-    throw ComputationError(what + " is not positive definite (chain " + group.name[chain] +
+    throw ComputationError(what + " is not positive definite (chain " + group.chains[chain].name +
                            (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
                            "): " + dca::cause_of_lost_matrix +
                            (may ? "; `handles: articulated` keeps more digits" : ""));

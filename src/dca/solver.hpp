@@ -92,7 +92,7 @@ struct ConfigurationView {
     /// Links: direction of the link from last body k to the ground; absent if no tip is jointed.
     ConstView<3> tip_direction;
     /// Outboard handle of bodies whose meeting frame depends on the joint's coordinates
-    /// (ChainGroup::moving_meeting): handle 2 from the centre of mass, and two axes of the meeting
+    /// (LocalJoints::moving_meeting): handle 2 from the centre of mass, and two axes of the meeting
     /// frame; B.
     ConstView<3> r2;
     ConstView<6> axes2;

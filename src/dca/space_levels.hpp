@@ -6,6 +6,7 @@
 
 #include "dca/host_space.hpp"
 #include "dca/level_solver.hpp"
+#include "dca/sweep_store.hpp"
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {
@@ -81,8 +82,6 @@ class SpaceLevels final : public LevelPart {
     using List = typename Space::template List<T>;
     template <class T>
     using Array = typename Space::template Array<T>;
-    template <class T, Order order>
-    using Records = typename Space::template Records<T, order>;
 
   public:
     /// Allocates the arrays for all slots and joints of the schedule, of which the part uses its
@@ -92,27 +91,17 @@ class SpaceLevels final : public LevelPart {
           work_(work),
           space_(space),
           crossing_(group, space),
-          model_(group),
+          store_(group, space, typename Space::Model(group)),
           leaves_up_(work.leaves_up ? schedule_.runs : none_.runs),
           leaves_down_(work.leaves_down ? schedule_.runs : none_.runs),
           up_(lists(schedule_.levels, work.first_up, work.end_up)),
           down_(lists(schedule_.levels, work.first_down, work.end_down)),
           top_(lists(schedule_.top_levels, 0, work.top ? schedule_.top_levels.size() : 0)),
           roots_(work.top ? schedule_.roots : none_.roots),
-          top_roots_(work.top ? schedule_.top_roots : none_.roots),
-          matrices_(schedule_.slots),
-          biases_(schedule_.slots),
-          joints_(schedule_.joints),
-          offsets_(schedule_.joints),
-          forces_(schedule_.joints),
-          lost_(1),
-          sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
-                  joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
-        space_.put(lost_.data(), PivotFailure{}.joint);
-    }
+          top_roots_(work.top ? schedule_.top_roots : none_.roots) {}
 
     void set(ConfigurationView const& host) override {
-        if (work_.leaves()) sweeps_.leaf.set(crossing_.take(host));
+        if (work_.leaves()) store_.sweeps().leaf.set(crossing_.take(host));
         space_.wait();
     }
     void set(LoadsView const& loads, AccelerationsView const& out) override {
@@ -122,12 +111,12 @@ class SpaceLevels final : public LevelPart {
         space_.wait();
     }
     void assemble_matrices() override {
-        space_.over(leaves_up_, loops::Climb<OfMatrices>{{sweeps_}});
-        climb(up_, loops::Climb<OfMatrices>{{sweeps_}});
+        space_.over(leaves_up_, loops::Climb<OfMatrices>{{store_.sweeps()}});
+        climb(up_, loops::Climb<OfMatrices>{{store_.sweeps()}});
         space_.wait();
     }
     void close_matrices() override {
-        loops::Climb<OfMatrices> const loop{{sweeps_}};
+        loops::Climb<OfMatrices> const loop{{store_.sweeps()}};
         climb(top_, loop);
         space_.over(roots_, loop);
         space_.over(top_roots_, loop);
@@ -155,14 +144,12 @@ class SpaceLevels final : public LevelPart {
         if (work_.leaves_down) crossing_.fetch(host_out_);
         // The force of the joint after this rank's last body is known to the top only.
         if (work_.top && out_.joint_force)
-            host_out_.joint_force.template store<K>(schedule_.bodies,
-                                                    force_of(sweeps_.forces.load(schedule_.halo)));
+            host_out_.joint_force.template store<K>(
+                schedule_.bodies, force_of(store_.sweeps().forces.load(schedule_.halo)));
     }
     std::int64_t first_indefinite() override {
-        unsigned long long const lost = space_.get(lost_.data());
-        if (lost == PivotFailure{}.joint) return schedule_.joints;
-        space_.put(lost_.data(), PivotFailure{}.joint);
-        return static_cast<std::int64_t>(lost);
+        PivotFailure const found = store_.take_failure(space_);
+        return found.none() ? schedule_.joints : static_cast<std::int64_t>(found.joint);
     }
 
     int choose(std::vector<std::int64_t> const& places) override {
@@ -196,7 +183,7 @@ class SpaceLevels final : public LevelPart {
     };
 
     /// Returns the bias sweep with the current loads and results.
-    OfBiases biases() const { return {sweeps_, loads_, out_}; }
+    OfBiases biases() const { return {store_.sweeps(), loads_, out_}; }
     /// Returns the merges of the levels [first, end) as lists of the space.
     static std::vector<List<Merge>> lists(std::vector<std::vector<Merge>> const& levels,
                                           std::size_t first, std::size_t end) {
@@ -218,17 +205,18 @@ class SpaceLevels final : public LevelPart {
     /// Calls use(view) with the records of the given kind.
     template <class Use>
     void with(Items items, Use const& use) {
+        Sweeps const& sweeps = store_.sweeps();
         switch (items) {
             case Items::matrices:
-                return use(matrices_.view());
+                return use(sweeps.matrices);
             case Items::biases:
-                return use(biases_.view());
+                return use(sweeps.biases);
             case Items::joints:
-                return use(joints_.view());
+                return use(sweeps.joints);
             case Items::offsets:
-                return use(offsets_.view());
+                return use(sweeps.offsets);
             case Items::forces:
-                return use(forces_.view());
+                return use(sweeps.forces);
         }
     }
     /// Returns memory for the numbers of `count` items during a transfer.
@@ -266,24 +254,15 @@ class SpaceLevels final : public LevelPart {
     LevelWork work_;
     Space space_;
     Crossing crossing_;
-    typename Space::Model model_;
+    SweepStore<Leaf, Space> store_;
     Empty none_;
     // Lists of the part's runs, merges and roots.
     List<Run> leaves_up_, leaves_down_;
     std::vector<List<Merge>> up_, down_, top_;
     List<Root> roots_, top_roots_;
-    // Records: segments are indexed by slot, the others by joint.
-    Records<typename Sweeps::Matrices, Order::plain> matrices_;
-    Records<typename Sweeps::Biases, Order::plain> biases_;
-    Records<typename Sweeps::Joint, Order::by_body> joints_;
-    Records<typename Sweeps::Offset, Order::by_body> offsets_;
-    Records<typename Sweeps::State, Order::by_body> forces_;
-    // Smallest joint with a pivot failure.
-    Array<unsigned long long> lost_;
     // Contiguous buffer for transfers.
     Array<double> parcel_;
     std::vector<std::unique_ptr<Places>> places_;
-    Sweeps sweeps_;
     // Loads and results in the space, and the host's views of the results.
     LoadsView loads_;
     AccelerationsView out_, host_out_;

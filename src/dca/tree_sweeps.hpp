@@ -71,7 +71,7 @@ struct TreeSweeps {
                                   in_stage_of_whole_runs = stage_records(K, Leaf::projected, true);
 
     Leaf leaf;
-    // Number of restricted directions of every joint (ChainGroup::restricted_of_joint).
+    // Number of restricted directions of every joint (LocalJoints::restricted).
     std::uint8_t const* restricted = nullptr;
     RecordsView<Matrices, Order::plain> matrices;  // Indexed by slot.
     RecordsView<Biases, Order::plain> biases;

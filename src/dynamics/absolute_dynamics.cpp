@@ -17,10 +17,10 @@ StateArray const& array_named(std::vector<StateArray> const& arrays, std::string
 std::vector<LocalPiece> local_pieces(ChainGroup const& group, Scene const& scene) {
     std::vector<LocalPiece> pieces;
     for (dca::Piece const& piece : group.pieces) {
-        ChainSpec const& chain = scene.chains[group.chain[piece.chain]];
+        ChainSpec const& chain = scene.chains[group.chains[piece.chain].in_scene];
         Vec3 const anchor = group.beads    ? chain.beads.anchor
                             : group.linked ? chain.linked.anchor
-                                           : group.joint_translation[piece.local];
+                                           : group.joints.translation[piece.local];
         pieces.push_back({piece.local, group.scene_index(piece.local), anchor});
     }
     return pieces;

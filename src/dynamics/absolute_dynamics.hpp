@@ -42,7 +42,7 @@ struct BodyResults {
     /// Constraint [torque, force] on body k at its inboard joint.
     std::vector<Vector<double, 6>> joint_force;
     std::vector<TipForce> tip_force;
-    /// Tension of each cross-link of the group, in the order of ChainGroup::crosslinks.
+    /// Tension of each cross-link of the group, in the order of Branching::crosslinks.
     std::vector<CrossLinkTension> crosslink_tension;
 };
 
@@ -58,7 +58,7 @@ inline double relative(double difference, double terms) {
 /// tips.
 template <class Directions>
 DirectionsView of_tips(ChainGroup const& group, Directions& field) {
-    return group.has_tips() ? field.view() : DirectionsView{};
+    return group.ends.has_tips() ? field.view() : DirectionsView{};
 }
 
 /// The parts of the group's chains on this rank, with the anchors of their bases.
@@ -68,15 +68,15 @@ std::vector<LocalPiece> local_pieces(ChainGroup const&, Scene const&);
 template <class End>
 std::vector<HeldTip> held_tips(ChainGroup const& group, End const& end) {
     std::vector<HeldTip> tips;
-    for (LocalTip const& tip : group.tips) {
+    for (LocalTip const& tip : group.ends.tips) {
         Vec3 const start = end(tip.body), anchor = tip.joint.anchor.value_or(start);
         tips.push_back(
             {tip.body, anchor, tip.joint.length > 0 ? tip.joint.length : norm(anchor - start)});
     }
-    for (std::size_t i = 0; i < group.rings.size(); ++i) {
-        LocalRing const& ring = group.rings[i];
+    for (std::size_t i = 0; i < group.ends.rings.size(); ++i) {
+        LocalRing const& ring = group.ends.rings[i];
         if (ring.last < 0) tips.emplace_back();
-        HeldTip& tip = ring.last < 0 ? tips.back() : tips[group.tip_index(ring.last)];
+        HeldTip& tip = ring.last < 0 ? tips.back() : tips[group.ends.tip_index(ring.last)];
         tip.ring = static_cast<std::int64_t>(i);
         tip.first = ring.first;
     }

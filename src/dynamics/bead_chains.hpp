@@ -37,9 +37,9 @@ struct BeadPlaces {
 /// BeadPlaces of branched and cross-linked chains. Link k > size is a cross-link
 /// (ChainGroup::first_crosslink()).
 struct BranchedPlaces : BeadPlaces {
-    /// ChainGroup::inboard.
+    /// Branching::inboard.
     std::int64_t const* inboard_bead = nullptr;
-    /// ChainGroup::crosslinks.
+    /// Branching::crosslinks.
     LocalCrossLink const* crosslink = nullptr;
     CATENA_HD_IN_PLACE std::int64_t inboard(std::int64_t k) const {
         return k < size ? inboard_bead[k] : crosslink[k - size - 1].inboard;

@@ -9,7 +9,8 @@ namespace catena {
 
 std::vector<std::uint8_t> links_of(ChainGroup const& group) {
     std::vector<std::uint8_t> links;
-    for (std::int64_t k = 0; k < group.size; ++k) links.push_back(is_rod(group.joint[k]) ? 1 : 0);
+    for (std::int64_t k = 0; k < group.size; ++k)
+        links.push_back(is_rod(group.joints.type[k]) ? 1 : 0);
     return links;
 }
 
@@ -24,7 +25,7 @@ Field<1> halves_over(Field<1> const& length, Executor const& executor) {
 void place_beads(ChainGroup const& group, Scene const& scene, View<3> position, View<3> velocity,
                  Executor const& executor) {
     each_local_body(group, executor, [&](dca::Piece const& piece, std::int64_t i) {
-        BeadArrays const& beads = scene.chains[group.chain[piece.chain]].beads;
+        BeadArrays const& beads = scene.chains[group.chains[piece.chain].in_scene].beads;
         position.store(piece.local + i, beads.position[piece.body + i]);
         velocity.store(piece.local + i, beads.velocity[piece.body + i]);
     });
@@ -32,8 +33,9 @@ void place_beads(ChainGroup const& group, Scene const& scene, View<3> position, 
 
 /// Force of the outboard link, with the opposite sign of that on bead k.
 Vec3 BeadSolution::outboard_force(std::int64_t k) const {
-    if (group.has_jointed_tip(k)) return tip_force.load<1>(k)[0] * tip_direction.load(k);
-    return group.is_last[k] ? Vec3::zero() : joint_force.load<1>(k + 1)[0] * direction.load(k + 1);
+    if (group.ends.has_jointed_tip(k)) return tip_force.load<1>(k)[0] * tip_direction.load(k);
+    return group.ends.is_last[k] ? Vec3::zero()
+                                 : joint_force.load<1>(k + 1)[0] * direction.load(k + 1);
 }
 
 std::vector<BeadSolution::Outboard> BeadSolution::outboard_forces() const {
@@ -42,11 +44,12 @@ std::vector<BeadSolution::Outboard> BeadSolution::outboard_forces() const {
     for (std::int64_t k = 0; k < group.size; ++k) {
         if (!group.is_branched())
             add(all[static_cast<std::size_t>(k)], outboard_force(k));
-        else if (std::int64_t const p = group.inboard[static_cast<std::size_t>(k)]; p >= 0)
+        else if (std::int64_t const p = group.branching.inboard[static_cast<std::size_t>(k)];
+                 p >= 0)
             add(all[static_cast<std::size_t>(p)], joint_force.load<1>(k)[0] * direction.load(k));
     }
-    for (std::size_t i = 0; i < group.crosslinks.size(); ++i) {
-        LocalCrossLink const& link = group.crosslinks[i];
+    for (std::size_t i = 0; i < group.branching.crosslinks.size(); ++i) {
+        LocalCrossLink const& link = group.branching.crosslinks[i];
         std::int64_t const k = group.first_crosslink() + static_cast<std::int64_t>(i);
         Vec3 const f = joint_force.load<1>(k)[0] * direction.load(k);
         add(all[static_cast<std::size_t>(link.inboard)], f);
@@ -62,11 +65,11 @@ BodyResults BeadSolution::results() const {
         Vec3 const f = joint_force.load<1>(k)[0] * direction.load(k);
         r.joint_force.push_back({{0, 0, 0, f[0], f[1], f[2]}});
     }
-    for (std::int64_t i = 0; i < std::ssize(group.crosslinks); ++i)
+    for (std::int64_t i = 0; i < std::ssize(group.branching.crosslinks); ++i)
         r.crosslink_tension.push_back(
-            {group.scene_chain(group.crosslinks[static_cast<std::size_t>(i)].inboard),
+            {group.scene_chain(group.branching.crosslinks[static_cast<std::size_t>(i)].inboard),
              -joint_force.load<1>(group.first_crosslink() + i)[0]});
-    for (LocalTip const& tip : group.tips) {
+    for (LocalTip const& tip : group.ends.tips) {
         Vec3 const f = outboard_force(tip.body);
         r.tip_force.push_back({group.scene_chain(tip.body), {{0, 0, 0, -f[0], -f[1], -f[2]}}});
     }
@@ -80,12 +83,13 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
     double worst = 0;
     std::vector<Outboard> const outboard = outboard_forces();
     for (std::int64_t k = 0; k < group.size; ++k) {
-        Vec3 const a = acceleration.load(k), ma = group.mass.view().at(k, 0) * a, f = force.load(k);
+        Vec3 const a = acceleration.load(k), ma = group.bodies.mass.view().at(k, 0) * a,
+                   f = force.load(k);
         Vec3 const inboard = joint_force.load<1>(k)[0] * direction.load(k);
         auto const& [beyond, of_outboard] = outboard[static_cast<std::size_t>(k)];
         double const size = norm(f) + norm(inboard) + of_outboard;
         worst = larger(worst, relative(norm(ma - f - inboard + beyond), norm(ma) + size));
-        terms.set(k, {{a[0], a[1], a[2], group.inverse_mass.view().at(k, 0) * size}});
+        terms.set(k, {{a[0], a[1], a[2], group.bodies.inverse_mass.view().at(k, 0) * size}});
     }
     exchange_from_inboard(communicator, group, terms.view());
     auto const beyond = beyond_tips_of<7>(group, communicator, [&](std::int64_t k) {
@@ -95,7 +99,7 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
     });
     for (HeldTip const& tip : tips) {
         if (tip.body < 0) continue;
-        Vector<double, 7> const b = beyond[group.tip_index(tip.body)];
+        Vector<double, 7> const b = beyond[group.ends.tip_index(tip.body)];
         Vec3 const u = tip_direction.load(tip.body), there{{b[0], b[1], b[2]}};
         double const turning =
             velocity_bias(Vec3{{b[4], b[5], b[6]}} - velocity.load(tip.body), u, tip.length);
@@ -108,16 +112,17 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
         Vec3 const across{{mine[0] - before[0], mine[1] - before[1], mine[2] - before[2]}};
         Vec3 const apart = velocity.load(to) - (grounded ? Vec3::zero() : velocity.load(from));
         double const turning =
-            velocity_bias(apart, direction.load(link), group.length.view().at(link, 0));
+            velocity_bias(apart, direction.load(link), group.joints.length.view().at(link, 0));
         worst = larger(worst, relative(dot(direction.load(link), across) + turning,
                                        mine[3] + before[3] + turning));
     };
     for (std::int64_t k = 0; k < group.size; ++k)
-        if (is_rod(group.joint[k]))
-            compare(k, group.is_branched() ? group.inboard[k] : k - 1, k, group.is_first[k] != 0);
-    for (std::int64_t i = 0; i < std::ssize(group.crosslinks); ++i)
-        compare(group.first_crosslink() + i, group.crosslinks[i].inboard,
-                group.crosslinks[i].outboard, false);
+        if (is_rod(group.joints.type[k]))
+            compare(k, group.is_branched() ? group.branching.inboard[k] : k - 1, k,
+                    group.ends.is_first[k] != 0);
+    for (std::int64_t i = 0; i < std::ssize(group.branching.crosslinks); ++i)
+        compare(group.first_crosslink() + i, group.branching.crosslinks[i].inboard,
+                group.branching.crosslinks[i].outboard, false);
     return communicator.max(worst);
 }
 

@@ -14,8 +14,8 @@ struct BodyLoadsMaker {
     /// True if the term acts on a chain of the group, on any rank.
     template <class Term>
     bool any() const {
-        return std::any_of(group.chain.begin(), group.chain.end(), [&](int chain) {
-            return Term::count(scene, scene.chains[static_cast<std::size_t>(chain)]) > 0;
+        return std::any_of(group.chains.begin(), group.chains.end(), [&](GroupChain const& chain) {
+            return Term::count(scene, scene.chains[static_cast<std::size_t>(chain.in_scene)]) > 0;
         });
     }
     bool any_with(auto const& property) const {
@@ -36,7 +36,7 @@ struct BodyLoadsMaker {
         Field<D> made(group.size);
         for (dca::Piece const& piece : group.pieces) {
             ChainSpec const& chain =
-                scene.chains[static_cast<std::size_t>(group.chain[piece.chain])];
+                scene.chains[static_cast<std::size_t>(group.chains[piece.chain].in_scene)];
             for (std::int64_t i = 0; i < piece.count; ++i)
                 made.set(piece.local + i, get(chain, static_cast<std::size_t>(piece.body + i)));
         }

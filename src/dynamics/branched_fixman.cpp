@@ -35,12 +35,13 @@ BranchedFixman::BranchedFixman(ChainGroup const& group, Scene const& scene,
       beyond_(at(group.size), 0),
       before_(at(group.size), 0),
       energy_(at(group.size), 0) {
-    for (std::int64_t const p : group.inboard)
+    for (std::int64_t const p : group.branching.inboard)
         if (p >= 0) ++first_child_[at(p) + 1];
     for (std::size_t k = 1; k < first_child_.size(); ++k) first_child_[k] += first_child_[k - 1];
     std::vector<std::int64_t> next = first_child_;
     for (std::int64_t k = 0; k < group.size; ++k)
-        if (std::int64_t const p = group.inboard[at(k)]; p >= 0) child_[at(next[at(p)]++)] = k;
+        if (std::int64_t const p = group.branching.inboard[at(k)]; p >= 0)
+            child_[at(next[at(p)]++)] = k;
 }
 
 void BranchedFixman::add_forces(ConfigurationView const& configuration, View<3> force) {
@@ -52,17 +53,17 @@ void BranchedFixman::add_forces(ConfigurationView const& configuration, View<3> 
 
 void BranchedFixman::sweep_inwards(dca::Piece const& chain, ConstView<3> direction) {
     for (std::int64_t k = chain.local; k < chain.local + chain.count; ++k)
-        inertia_[at(k)] = isotropic(group_.mass[k][0]);
+        inertia_[at(k)] = isotropic(group_.bodies.mass[k][0]);
     for (std::int64_t k = chain.local + chain.count; k-- > chain.local;) {
         Sym3 const factor = dca::factorize(inertia_[at(k)], 3);
-        double logarithm = -3 * std::log(group_.mass[k][0]);
+        double logarithm = -3 * std::log(group_.bodies.mass[k][0]);
         for (int i = 0; i < 3; ++i) logarithm -= std::log(factor(i, i));
         if (has_link(k)) {
             Vec3 const u = direction.load(k);
             held_[at(k)] = dca::solve_upper(factor, dca::solve_lower(factor, u));
             beyond_[at(k)] = dot(u, held_[at(k)]);
             logarithm += std::log(beyond_[at(k)]);
-            if (std::int64_t const p = group_.inboard[at(k)]; p >= 0)
+            if (std::int64_t const p = group_.branching.inboard[at(k)]; p >= 0)
                 add_along(inertia_[at(p)], 1 / beyond_[at(k)], u);
         }
         energy_[at(k)] = 0.5 * kt_ * logarithm;
@@ -83,7 +84,7 @@ void BranchedFixman::sweep_outwards(dca::Piece const& chain, ConstView<3> direct
             std::int64_t const k = child_[at(i)];
             add_along(after[at(i - first - 1)], 1 / beyond_[at(k)], direction.load(k));
         }
-        Sym3 others = isotropic(group_.mass[p][0]);
+        Sym3 others = isotropic(group_.bodies.mass[p][0]);
         Vec3 const inboard = direction.load(p);
         for (std::int64_t i = first; i < end; ++i) {
             std::int64_t const k = child_[at(i)];
@@ -112,9 +113,9 @@ void BranchedFixman::add_force(std::int64_t k, Vec3 const& yield, ConstView<3> d
                                View<3> force) {
     Vec3 const u = direction.load(k);
     Vec3 const d = (1 / (beyond_[at(k)] + before_[at(k)])) * (held_[at(k)] + yield);
-    Vec3 const turning = (kt_ / group_.length[k][0]) * plus_scaled(d, -dot(u, d), u);
+    Vec3 const turning = (kt_ / group_.joints.length[k][0]) * plus_scaled(d, -dot(u, d), u);
     force.store(k, force.load(k) - turning);
-    if (std::int64_t const p = group_.inboard[at(k)]; p >= 0)
+    if (std::int64_t const p = group_.branching.inboard[at(k)]; p >= 0)
         force.store(p, force.load(p) + turning);
 }
 

@@ -18,7 +18,7 @@ class BranchedFixman final : public FixmanPotential {
 
   private:
     bool has_link(std::int64_t k) const {
-        return is_rod(group_.joint[static_cast<std::size_t>(k)]);
+        return is_rod(group_.joints.type[static_cast<std::size_t>(k)]);
     }
     /// Computes what the outboard side of each link holds, and the energy.
     void sweep_inwards(dca::Piece const&, ConstView<3> direction);

@@ -30,9 +30,13 @@ void CrossLinkFixman::add_forces(ConfigurationView const& configuration, View<3>
         if (Links const& of = solver_.links()[i]; !of.system.is_regular())
             throw ComputationError(
                 "the Fixman potential is infinite: links of chain " +
-                group_.name[static_cast<std::size_t>(
-                    group_.pieces[static_cast<std::size_t>(group_.crosslinks[of.first].piece)]
-                        .chain)] +
+                group_
+                    .chains[static_cast<std::size_t>(
+                        group_
+                            .pieces[static_cast<std::size_t>(
+                                group_.branching.crosslinks[of.first].piece)]
+                            .chain)]
+                    .name +
                 " have become redundant; use a smaller step, or leave out fixman");
     executor_.for_each(std::ssize(solver_.links()), [&](std::int64_t i) {
         Links const& of = solver_.links()[static_cast<std::size_t>(i)];
@@ -64,31 +68,31 @@ void CrossLinkFixman::add_chain(Links const& of, Eigen::MatrixXd const& inverse,
                          std::int64_t to) {
         Vec3 const d = apart(inverse * lambda, from, to), u = direction.load(link);
         Vec3 const turning =
-            (kt_ / group_.length.view().at(link, 0)) * plus_scaled(d, -dot(u, d), u);
+            (kt_ / group_.joints.length.view().at(link, 0)) * plus_scaled(d, -dot(u, d), u);
         force.store(to, force.load(to) - turning);
         if (from >= 0) force.store(from, force.load(from) + turning);
     };
     dca::Piece const& piece =
-        group_.pieces[static_cast<std::size_t>(group_.crosslinks[of.first].piece)];
+        group_.pieces[static_cast<std::size_t>(group_.branching.crosslinks[of.first].piece)];
     Eigen::VectorXd lambda(count);
     for (std::int64_t k = piece.local; k < piece.local + piece.count; ++k) {
-        if (!is_rod(group_.joint[static_cast<std::size_t>(k)])) continue;
+        if (!is_rod(group_.joints.type[static_cast<std::size_t>(k)])) continue;
         for (Eigen::Index q = 0; q < count; ++q)
             lambda[q] = columns_[static_cast<std::size_t>(q)].force.view().load<1>(k)[0];
-        add(k, lambda, group_.inboard[static_cast<std::size_t>(k)], k);
+        add(k, lambda, group_.branching.inboard[static_cast<std::size_t>(k)], k);
     }
     for (Eigen::Index q = 0; q < count; ++q) {
         std::size_t const c = of.first + static_cast<std::size_t>(q);
         add(group_.first_crosslink() + static_cast<std::int64_t>(c),
-            Eigen::VectorXd::Unit(count, q), group_.crosslinks[c].inboard,
-            group_.crosslinks[c].outboard);
+            Eigen::VectorXd::Unit(count, q), group_.branching.crosslinks[c].inboard,
+            group_.branching.crosslinks[c].outboard);
     }
 }
 
 std::vector<double> CrossLinkFixman::energy() const {
     std::vector<double> energy = without_.energy();
     for (std::size_t i = 0; i < energy_.size(); ++i) {
-        LocalCrossLink const& link = group_.crosslinks[solver_.links()[i].first];
+        LocalCrossLink const& link = group_.branching.crosslinks[solver_.links()[i].first];
         std::int64_t const first = group_.pieces[static_cast<std::size_t>(link.piece)].local;
         energy[static_cast<std::size_t>(first)] += energy_[i];
     }

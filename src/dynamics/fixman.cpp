@@ -34,8 +34,9 @@ LinkFixman::LinkFixman(ChainGroup const& group, Scene const& scene, Executor con
       across_(group.size) {}
 
 Vec3 LinkFixman::outboard(ConfigurationView const& at, std::int64_t k) const {
-    if (group_.has_jointed_tip(k)) return at.tip_direction.load(k);
-    return group_.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : at.direction.load(k + 1);
+    if (group_.ends.has_jointed_tip(k)) return at.tip_direction.load(k);
+    return group_.ends.is_last[static_cast<std::size_t>(k)] ? Vec3::zero()
+                                                            : at.direction.load(k + 1);
 }
 
 /// Force -grad U_F = kT sum_k w_k grad(u_k . u_k+1), w_k = (T^-1)_k,k+1 / m_k. It rotates link k
@@ -43,7 +44,8 @@ Vec3 LinkFixman::outboard(ConfigurationView const& at, std::int64_t k) const {
 void LinkFixman::add_forces(ConfigurationView const& at, View<3> force) {
     solver_.invert({pivot_.view(), tip_pivot_.view(), beside_.view()});
     View<1> const beside = beside_.view();
-    ConstView<1> const inverse_mass = group_.inverse_mass.view(), length = group_.length.view();
+    ConstView<1> const inverse_mass = group_.bodies.inverse_mass.view(),
+                       length = group_.joints.length.view();
     View<3> const pull = pull_.view(), across = across_.view();
     auto const weight = [=](std::int64_t k) { return beside.at(k, 0) * inverse_mass.at(k, 0); };
     executor_.for_each(group_.size,
@@ -52,7 +54,7 @@ void LinkFixman::add_forces(ConfigurationView const& at, View<3> force) {
     executor_.for_each(group_.size, [&](std::int64_t k) {
         if (!has_link(k)) return across.store(k, Vec3::zero());
         Vec3 const before =
-            group_.is_first[static_cast<std::size_t>(k)] ? Vec3::zero() : pull.load(k - 1);
+            group_.ends.is_first[static_cast<std::size_t>(k)] ? Vec3::zero() : pull.load(k - 1);
         across.store(k,
                      turning(kt_ / length.at(k, 0), plus_scaled(before, weight(k), outboard(at, k)),
                              at.direction.load(k)));
@@ -60,7 +62,7 @@ void LinkFixman::add_forces(ConfigurationView const& at, View<3> force) {
     exchange_from_outboard(communicator_, group_, across);
     executor_.for_each(group_.size, [&](std::int64_t k) {
         Vec3 const after =
-            group_.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : across.load(k + 1);
+            group_.ends.is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : across.load(k + 1);
         force.store(k, force.load(k) + (across.load(k) - after));
     });
     for (HeldTip const& tip : tips_) {

@@ -35,7 +35,7 @@ class LinkFixman final : public FixmanPotential {
 
   private:
     bool has_link(std::int64_t k) const {
-        return is_rod(group_.joint[static_cast<std::size_t>(k)]);
+        return is_rod(group_.joints.type[static_cast<std::size_t>(k)]);
     }
     /// Direction of the outboard link of bead k; zero if it has none.
     Vec3 outboard(ConfigurationView const&, std::int64_t k) const;

@@ -39,6 +39,17 @@ std::string join(std::vector<std::string> const& words) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// State and times of the last evaluation of the forces.
+struct LastEvaluation {
+    /// True from begin() to finish().
+    bool under_way = false;
+    /// True once positions have been given.
+    bool exists = false;
+    Interval gathering, computing;
+    /// Exception that ended it.
+    std::exception_ptr error;
+};
+
 /// OpenMmForce on any path; the decomposition is a RankForces.
 class OpenMmForces final : public OpenMmForce {
   public:
@@ -52,7 +63,7 @@ class OpenMmForces final : public OpenMmForce {
     DevicePath* device_path() override { return device_.get(); }
     void forces_again(View<3> forces) override;
     std::vector<EnergyTerm> energies() override;
-    Interval last_evaluation() const override { return interval_; }
+    Interval last_evaluation() const override { return last_.computing; }
     bool leaves_a_core() const override { return leaves_a_core_; }
     std::vector<std::string> description() const override;
     std::string platform() const override { return platform_.name(); }
@@ -62,7 +73,7 @@ class OpenMmForces final : public OpenMmForce {
     GhostTraffic traffic() const override { return rank_->traffic(); }
     std::int64_t largest_context() const override { return rank_->largest_context(); }
     std::int64_t contexts() const override { return rank_->contexts(); }
-    Interval last_gathering() const override { return gathering_; }
+    Interval last_gathering() const override { return last_.gathering; }
 
   private:
     std::int64_t first() const { return first_of_rank_[communicator_.rank()]; }
@@ -77,7 +88,7 @@ class OpenMmForces final : public OpenMmForce {
     std::vector<ForceLayer> layers(OpenMmSpec const& spec, BeadSystem const& beads);
     std::unique_ptr<RankForces> make_rank_forces(OpenMmSpec const& spec,
                                                  BeadSystem const& beads) const;
-    /// Computes the forces and keeps the exception, if any, in `error_`.
+    /// Computes the forces and keeps the exception, if any, in `last_`.
     void evaluate() noexcept;
     /// Waits for the worker, if there is one.
     void wait();
@@ -93,10 +104,7 @@ class OpenMmForces final : public OpenMmForce {
     std::unique_ptr<DevicePath> device_;
     // own positions, nm, and forces on them, kJ/mol/nm
     std::vector<Vec3> own_, forces_;
-    bool under_way_ = false, evaluated_ = false;
-    double begun_ = 0;
-    Interval gathering_, interval_;
-    std::exception_ptr error_;
+    LastEvaluation last_;
     // Declared last: its thread must end before the members it uses.
     std::unique_ptr<Worker> worker_;
 };
@@ -212,21 +220,21 @@ void OpenMmForces::evaluate() noexcept {
     try {
         rank_->evaluate(forces_);
     } catch (...) {
-        error_ = std::current_exception();
+        last_.error = std::current_exception();
     }
-    interval_.end = seconds_now();
+    last_.computing.end = seconds_now();
 }
 
 void OpenMmForces::begin(ConstView<3> positions) {
     wait();
-    begun_ = seconds_now();
+    double const begun = seconds_now();
     for (std::int64_t k = 0; k < own_count(); ++k) own_[k] = positions.load(k);
     rank_->gather(own_);
-    gathering_ = {begun_, seconds_now()};
+    last_.gathering = {begun, seconds_now()};
     path_.settle(communicator_);
-    error_ = nullptr;
-    under_way_ = evaluated_ = true;
-    interval_.begin = seconds_now();
+    last_.error = nullptr;
+    last_.under_way = last_.exists = true;
+    last_.computing.begin = seconds_now();
     if (!path_.runs_on_worker()) {
         evaluate();
         return;
@@ -242,11 +250,11 @@ void OpenMmForces::wait() {
 
 void OpenMmForces::finish(View<3> forces) {
     wait();
-    if (!std::exchange(under_way_, false))
+    if (!std::exchange(last_.under_way, false))
         throw ComputationError(
             "OpenMM's forces were requested before their computation was started");
     try {
-        if (error_) std::rethrow_exception(error_);
+        if (last_.error) std::rethrow_exception(last_.error);
     } catch (ComputationError const&) {
         throw;
     } catch (std::exception const& e) {
@@ -255,12 +263,12 @@ void OpenMmForces::finish(View<3> forces) {
     }
     for (std::int64_t k = 0; k < own_count(); ++k)
         for (int c = 0; c < 3; ++c) forces.at(k, c) += forces_[k][c];
-    path_.note(seconds_now() - begun_);
+    path_.note(seconds_now() - last_.gathering.begin);
 }
 
 std::vector<EnergyTerm> OpenMmForces::energies() {
     wait();
-    if (!evaluated_ && !device_)
+    if (!last_.exists && !device_)
         throw ComputationError("OpenMM's energies were requested before it received positions");
     std::vector<double> values(model_.terms.size());
     std::string failure;

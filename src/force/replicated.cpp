@@ -47,7 +47,7 @@ class ReplicatedForces final : public RankForces {
                                  bytes_of_rank_);
         positions_.resize(all.size());
         for (std::size_t i = 0; i < all.size(); ++i) positions_[particle_[i]] = all[i];
-        are_set_ = false;
+        not_set_ = positions_;
     }
 
     void evaluate(std::span<Vec3> own_forces) override {
@@ -65,7 +65,7 @@ class ReplicatedForces final : public RankForces {
         if (communicator_.rank() != 0) return;
         if (!context_) make_context();
         // No positions were gathered if they are on a GPU.
-        if (!positions_.empty() && !are_set_) set_positions();
+        if (!not_set_.empty()) set_positions();
         context_->find_energies(of_group);
     }
     DevicePathPlan plan(bool overlap) override {
@@ -108,7 +108,7 @@ class ReplicatedForces final : public RankForces {
     /// depend on when its energies are asked for.
     void set_positions() {
         context_->set_positions(positions_, positions_.size());
-        are_set_ = true;
+        not_set_ = {};
     }
 
     OpenMmModel const& model_;
@@ -126,8 +126,8 @@ class ReplicatedForces final : public RankForces {
     // index of the rank's first own bead in the order of by_rank
     std::int64_t first_ = 0;
     std::unique_ptr<ForceContext> context_;
-    std::vector<Vec3> positions_;  // positions of all particles, nm, W
-    bool are_set_ = false;         // true if the Context has positions_
+    std::vector<Vec3> positions_;    // positions of all particles, nm, W
+    std::span<Vec3 const> not_set_;  // those of them that the Context does not have yet
 };
 
 }  // namespace

@@ -58,10 +58,10 @@ CalvadosComponent component_of(Node const& node, Node const* defaults, std::stri
     made.network = word("restraint_type", "harmonic");
     number("kb", made.kb), number("k_harmonic", made.k_harmonic);
     number("k_go", made.k_go), number("cutoff_restr", made.cutoff_restr);
-    number("rna_kb1", made.rna_kb1), number("rna_kb2", made.rna_kb2);
-    number("rna_pa", made.rna_pa), number("rna_ka", made.rna_ka);
-    number("rna_nb_sigma", made.rna_nb_sigma), number("rna_nb_scale", made.rna_nb_scale);
-    number("rna_nb_cutoff", made.rna_nb_cutoff);
+    number("rna_kb1", made.rna.kb1), number("rna_kb2", made.rna.kb2);
+    number("rna_pa", made.rna.pa), number("rna_ka", made.rna.ka);
+    number("rna_nb_sigma", made.rna.nb_sigma), number("rna_nb_scale", made.rna.nb_scale);
+    number("rna_nb_cutoff", made.rna.nb_cutoff);
     made.residues = word("fresidues", ""), made.sequences = word("ffasta", "");
     return made;
 }

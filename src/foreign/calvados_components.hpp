@@ -11,6 +11,16 @@
 
 namespace catena::foreign {
 
+/// Parameters of RNA under the package's keys, without `rna_`.
+struct RnaParameters {
+    /// Stiffness of bonds along the backbone and to bases, kJ/mol/nm2.
+    double kb1 = 8033, kb2 = 8033;
+    /// Angle, rad, and its stiffness, kJ/mol/rad2.
+    double pa = 3.14, ka = 7.24;
+    /// Diameter, nm, factor and cutoff, nm, of stacked bases.
+    double nb_sigma = 0.4, nb_scale = 15, nb_cutoff = 0.6;
+};
+
 /// One component of the package. Its own properties override the defaults.
 struct CalvadosComponent {
     std::string name, type;  // type: protein, crowder, rna, lipid, ...
@@ -26,10 +36,7 @@ struct CalvadosComponent {
     /// Stiffness of its bonds and of its harmonic network, kJ/mol/nm2; depth of its Go contacts,
     /// kJ/mol; distance up to which a network joins pairs, nm.
     double kb = 8033, k_harmonic = 700, k_go = 15, cutoff_restr = 0.9;
-    /// Parameters of RNA: stiffness of bonds along the backbone and to bases, kJ/mol/nm2; angle,
-    /// rad, and its stiffness, kJ/mol/rad2; diameter, nm, factor and cutoff, nm, of stacked bases.
-    double rna_kb1 = 8033, rna_kb2 = 8033, rna_pa = 3.14, rna_ka = 7.24, rna_nb_sigma = 0.4,
-           rna_nb_scale = 15, rna_nb_cutoff = 0.6;
+    RnaParameters rna;
     /// Files of residues and sequences as they are written; empty without one.
     std::string residues, sequences;
     /// Places of its properties in messages: "FILE: system.A.kb, line 3".

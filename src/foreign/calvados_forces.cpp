@@ -93,32 +93,34 @@ class BondCheck {
   private:
     /// Compares bonds, stacked bases and angles of RNA. Restraints change lengths and angles.
     void compare_rna(CalvadosComponent const& rna, ComponentForces const& of) const {
+        RnaParameters const& parameters = rna.rna;
         if (of.bonds != nullptr)
             for (BondText const& bond : of.bonds->bonds) {
                 bool const is_base = bond.second == bond.first + 1;
                 refuse_other(rna, {"bonds", "a stiffness", "kJ/mol/nm2"}, bond.stiffness,
-                             is_base ? "rna_kb2" : "rna_kb1", is_base ? rna.rna_kb2 : rna.rna_kb1);
+                             is_base ? "rna_kb2" : "rna_kb1",
+                             is_base ? parameters.kb2 : parameters.kb1);
             }
         if (ForceText const* const stacks = of.stacks) {
             auto const cutoff = stacks->globals.find("rc");
             if (cutoff != stacks->globals.end())
                 refuse_other(rna, {"stacked bases", "a cutoff", "nm"}, cutoff->second,
-                             "rna_nb_cutoff", rna.rna_nb_cutoff);
+                             "rna_nb_cutoff", parameters.nb_cutoff);
             for (BondText const& pair : stacks->bonds) {
                 refuse_other(rna, {"stacked bases", "a factor", ""}, pair.third, "rna_nb_scale",
-                             rna.rna_nb_scale);
+                             parameters.nb_scale);
                 if (!rna.restrained)
                     refuse_other(rna, {"stacked bases", "a diameter", "nm"}, pair.length,
-                                 "rna_nb_sigma", rna.rna_nb_sigma);
+                                 "rna_nb_sigma", parameters.nb_sigma);
             }
         }
         if (ForceText const* const angles = of.angles)
             for (BondText const& angle : angles->bonds) {
                 refuse_other(rna, {"angles", "a stiffness", "kJ/mol/rad2"}, angle.stiffness,
-                             "rna_ka", rna.rna_ka);
+                             "rna_ka", parameters.ka);
                 if (!rna.restrained)
                     refuse_other(rna, {"angles", "a rest angle", "rad"}, angle.length, "rna_pa",
-                                 rna.rna_pa);
+                                 parameters.pa);
             }
     }
 

@@ -141,78 +141,19 @@ bool are_alike(std::vector<BondText> a, std::vector<BondText> b) {
         });
 }
 
-/// Compares tables one after the other.
-class TableCheck {
+/// Returns the path as messages have it.
+std::string text_of(fs::path const& path) { return scene::shown_path(path.string()); }
+
+/// The files that a System was made of: copies in its folder, or files elsewhere.
+class TableFiles {
   public:
-    TableCheck(PackageFile const& config, std::string folder, MadeSystem const& made,
-               std::vector<std::string>& notes)
-        : folder_(std::move(folder)),
-          made_(made),
-          notes_(notes),
-          contacts_(contacts_of(made.text)),
-          masses_(made.text.masses()) {
-        if (config.find("pH") != nullptr) ph_ = config.number("pH", 7);
-    }
-
-    /// Compares the particles of each chain with the tables of its component.
-    void compare_chains(CalvadosComponents const& components) {
-        std::size_t first = 0;
-        auto const owners = components.of_chains(made_.chains.size());
-        index_bonds();
-        for (std::size_t c = 0; c < owners.size(); ++c) {
-            std::size_t const next = first + made_.chains[c].size();
-            if (!owners[c]->residues.empty())
-                with_file("fresidues", owners[c]->residues, [&](std::string const& file) {
-                    compare_chain(*owners[c], table_in(file), c, first);
-                });
-            first = next;
-        }
-    }
-
-    /// Compares the last force of bonds with a file of custom restraints. `molecules` are those of
-    /// the components; without them particles are not compared.
-    void compare_restraints(std::string const& written, bool go,
-                            CalvadosComponents const* components,
-                            std::vector<Molecules> const& molecules) {
-        with_file("fcustom_restraints", written, [&](std::string const& file) {
-            ForceText const* last = nullptr;
-            for (ForceText const& force : made_.text.forces())
-                if (force.kind == (go ? "CustomBondForce" : "HarmonicBondForce")) last = &force;
-            std::vector<BondText> const found =
-                last == nullptr ? std::vector<BondText>() : last->bonds;
-            bool const numbered = components != nullptr && !molecules.empty();
-            if (numbered) {
-                RestraintFile const lines(file, *components, molecules);
-                if (are_alike(lines.bonds(Numbering::of_names), found)) return;
-                if (are_alike(lines.bonds(Numbering::of_package), found))
-                    return note_shifted_restraints(shown(file));
-                refuse_restraints(file, lines.bonds(Numbering::of_names), found);
-            }
-            std::vector<BondText> const asked = RestraintFile(file).bonds(Numbering::none);
-            std::vector<BondText> without = found;
-            for (BondText& bond : without) bond.first = bond.second = 0;
-            if (!are_alike(asked, without)) refuse_restraints(file, asked, found);
-        });
-    }
-
-    /// Notes the files that are not there.
-    void note_missing() const {
-        if (missing_.empty()) return;
-        std::vector<std::string> parts;
-        for (auto const& [key, file] : missing_) parts.push_back(fmt::format("{} ({})", key, file));
-        notes_.push_back(
-            fmt::format("Not compared with {}, because the files are not there: {}. Copies in the "
-                        "folder would be read.",
-                        made_.name(), fmt::join(parts, ", ")));
-    }
-
-  private:
-    static std::string shown(fs::path const& path) { return scene::shown_path(path.string()); }
+    TableFiles(std::string folder, std::string system, std::vector<std::string>& notes)
+        : folder_(std::move(folder)), system_(std::move(system)), notes_(notes) {}
 
     /// Calls `compare` with the file of that name: a copy in the folder, or where it is written. A
     /// refusal is a note, the first one alone, for a file elsewhere.
     template <class Compare>
-    void with_file(char const* key, std::string const& written, Compare const& compare) {
+    void use(char const* key, std::string const& written, Compare const& compare) {
         std::error_code ignored;
         fs::path const path = written, copy = fs::path(folder_) / path.filename(),
                        relative = fs::path(folder_) / path;
@@ -221,7 +162,7 @@ class TableCheck {
                             (below && fs::is_regular_file(relative, ignored));
         fs::path const file = fs::is_regular_file(copy, ignored) ? copy : relative;
         if (!fs::is_regular_file(file, ignored)) {
-            missing_.emplace(key, shown(path));
+            missing_.emplace(key, text_of(path));
             return;
         }
         if (inside) return compare(file.string());
@@ -236,6 +177,177 @@ class TableCheck {
         }
     }
 
+    /// Notes the files that are not there.
+    void note_missing() const {
+        if (missing_.empty()) return;
+        std::vector<std::string> parts;
+        for (auto const& [key, file] : missing_) parts.push_back(fmt::format("{} ({})", key, file));
+        notes_.push_back(
+            fmt::format("Not compared with {}, because the files are not there: {}. Copies in the "
+                        "folder would be read.",
+                        system_, fmt::join(parts, ", ")));
+    }
+
+  private:
+    std::string folder_;
+    std::string system_;  // name of the System's file
+    std::vector<std::string>& notes_;
+    /// Files that are not there, by their keys.
+    std::map<std::string, std::string> missing_;
+    /// Files elsewhere that were refused.
+    std::set<std::string> differing_;
+};
+
+/// Throws InputError for restraints of a file, `asked`, that are not the System's bonds, `found`.
+[[noreturn]] void refuse_restraints(std::string const& file, MadeSystem const& made,
+                                    std::vector<BondText> const& asked,
+                                    std::vector<BondText> const& found) {
+    throw InputError(fmt::format("the {} custom restraints are not the {} bonds of the last "
+                                 "force of bonds of {}",
+                                 asked.size(), found.size(), made.name()),
+                     text_of(file), put_right);
+}
+
+/// Returns the note for restraints that the package has numbered otherwise than by names.
+std::string shifted_restraints(MadeSystem const& made, std::string const& file) {
+    return fmt::format(
+        "The custom restraints of {} join other molecules than {} names: for the third component "
+        "and later ones the package counts the molecules of the preceding one alone. The System "
+        "is simulated as it is.",
+        made.name(), text_of(file));
+}
+
+/// Returns the bonds of the System's last force of the kind that has the custom restraints.
+std::vector<BondText> last_bonds(MadeSystem const& made, bool go) {
+    ForceText const* last = nullptr;
+    for (ForceText const& force : made.text.forces())
+        if (force.kind == (go ? "CustomBondForce" : "HarmonicBondForce")) last = &force;
+    return last == nullptr ? std::vector<BondText>() : last->bonds;
+}
+
+/// Compares the System's last force of bonds with a file of custom restraints. Particles are
+/// compared if there are components and their `molecules`.
+void compare_restraints(std::string const& file, bool go, MadeSystem const& made,
+                        CalvadosComponents const* components,
+                        std::vector<Molecules> const& molecules, std::vector<std::string>& notes) {
+    std::vector<BondText> const found = last_bonds(made, go);
+    if (components != nullptr && !molecules.empty()) {
+        RestraintFile const lines(file, *components, molecules);
+        if (are_alike(lines.bonds(Numbering::of_names), found)) return;
+        if (are_alike(lines.bonds(Numbering::of_package), found))
+            return notes.push_back(shifted_restraints(made, file));
+        refuse_restraints(file, made, lines.bonds(Numbering::of_names), found);
+    }
+    std::vector<BondText> const asked = RestraintFile(file).bonds(Numbering::none);
+    std::vector<BondText> without = found;
+    for (BondText& bond : without) bond.first = bond.second = 0;
+    if (!are_alike(asked, without)) refuse_restraints(file, made, asked, found);
+}
+
+/// Compares chains with the sequences of FASTA files, each of which is read once.
+class SequenceCheck {
+  public:
+    explicit SequenceCheck(MadeSystem const& made) : made_(made) {}
+
+    /// Throws InputError unless the component's sequence in the file is that of the chain.
+    void compare(CalvadosComponent const& component, ResidueTable const& table,
+                 PdbChain const& chain, std::string const& file) {
+        std::string const& sequence = sequence_in(file, component.name);
+        std::size_t const beads = component.is_rna() ? calvados_rna::beads_a_nucleotide : 1;
+        if (sequence.size() * beads != chain.size())
+            throw InputError(
+                fmt::format("`{}` has {} residues, and chain {} of {} has {}",
+                            scene::shown(component.name), sequence.size(), scene::shown(chain.name),
+                            made_.topology, chain.size() / beads),
+                text_of(file), put_right);
+        for (std::size_t k = 0; k < chain.size(); ++k) {
+            char const letter = sequence[k / beads];
+            ResidueType const* const type = table.find(letter);
+            std::string const& name = chain.residue[k];
+            bool const same = type && (beads == 1 ? type->name == name : name[0] == letter);
+            if (!same)
+                throw InputError(fmt::format("`{}` has {} as residue {}, and {} has {}",
+                                             scene::shown(component.name), letter, k / beads + 1,
+                                             made_.topology, scene::shown(name)),
+                                 text_of(file), put_right);
+        }
+    }
+
+  private:
+    /// Returns a sequence in one-letter codes, without spaces.
+    std::string const& sequence_in(std::string const& file, std::string const& record) {
+        auto const [entry, is_new] = sequences_.try_emplace({file, record});
+        if (is_new) {
+            Node const at = named(file), name = named(record);
+            entry->second = scene::read_fasta(file, at, {&name, nullptr});
+            std::erase_if(entry->second, [](char c) { return c == '\n' || c == '\r' || c == ' '; });
+        }
+        return entry->second;
+    }
+
+    MadeSystem const& made_;
+    /// Sequences by file and record.
+    std::map<std::pair<std::string, std::string>, std::string> sequences_;
+};
+
+/// Type of bead k of a chain; nullptr if the table lacks it. The topology has nucleotides under
+/// the letters of their bases, with the backbone first.
+ResidueType const* type_of(CalvadosComponent const& component, ResidueTable const& table,
+                           PdbChain const& chain, std::size_t k) {
+    std::string const& name = chain.residue[k];
+    if (!component.is_rna()) return table.find(name);
+    return chain.place[k] == 0 ? table.find('p') : table.find(name.front());
+}
+
+/// Lengths of the first harmonic bonds of each particle to the particle before it and to the one
+/// before that, nm; 0 without one. Restraints come later in the System.
+std::array<std::vector<double>, 2> bonds_to_earlier(SystemText const& system,
+                                                    std::size_t particles) {
+    std::array<std::vector<double>, 2> lengths;
+    for (std::vector<double>& each : lengths) each.assign(particles, 0);
+    for (ForceText const& force : system.forces()) {
+        if (force.kind != "HarmonicBondForce") continue;
+        for (BondText const& bond : force.bonds) {
+            std::int64_t const back = bond.second - bond.first;
+            if ((back != 1 && back != 2) || bond.first < 0 ||
+                bond.second >= static_cast<std::int64_t>(particles))
+                continue;
+            double& length =
+                lengths[static_cast<std::size_t>(back - 1)][static_cast<std::size_t>(bond.second)];
+            if (length == 0) length = bond.length;
+        }
+    }
+    return lengths;
+}
+
+/// Compares the particles of chains with the tables of their components.
+class TableCheck {
+  public:
+    TableCheck(PackageFile const& config, MadeSystem const& made, TableFiles& files)
+        : made_(made),
+          files_(files),
+          contacts_(contacts_of(made.text)),
+          masses_(made.text.masses()),
+          to_earlier_(bonds_to_earlier(made.text, masses_.size())),
+          sequences_(made) {
+        if (config.find("pH") != nullptr) ph_ = config.number("pH", 7);
+    }
+
+    /// Compares the particles of each chain with the tables of its component.
+    void compare_chains(CalvadosComponents const& components) {
+        std::size_t first = 0;
+        auto const owners = components.of_chains(made_.chains.size());
+        for (std::size_t c = 0; c < owners.size(); ++c) {
+            std::size_t const next = first + made_.chains[c].size();
+            if (!owners[c]->residues.empty())
+                files_.use("fresidues", owners[c]->residues, [&](std::string const& file) {
+                    compare_chain(*owners[c], table_in(file), c, first);
+                });
+            first = next;
+        }
+    }
+
+  private:
     struct Particle {
         std::size_t index;
         ResidueType const& type;
@@ -251,15 +363,6 @@ class TableCheck {
     /// True if a particle begins (or ends) a chain of bonds.
     bool is_end(std::size_t p, bool is_border) const {
         return is_border || (made_.charges && !made_.charges->joined[p]);
-    }
-
-    /// Type of bead k of a chain; nullptr if the table lacks it. The topology has nucleotides under
-    /// the letters of their bases, with the backbone first.
-    static ResidueType const* type_of(CalvadosComponent const& component, ResidueTable const& table,
-                                      PdbChain const& chain, std::size_t k) {
-        std::string const& name = chain.residue[k];
-        if (!component.is_rna()) return table.find(name);
-        return chain.place[k] == 0 ? table.find('p') : table.find(name.front());
     }
 
     void compare_chain(CalvadosComponent const& component, ResidueTable const& table, std::size_t c,
@@ -289,8 +392,8 @@ class TableCheck {
         }
         compare_bonds_of(component, table, chain, first);
         if (!component.sequences.empty() && !component.restrained)
-            with_file("ffasta", component.sequences, [&](std::string const& file) {
-                compare_sequence(component, table, chain, file);
+            files_.use("ffasta", component.sequences, [&](std::string const& file) {
+                sequences_.compare(component, table, chain, file);
             });
     }
 
@@ -316,24 +419,6 @@ class TableCheck {
                         particle.type.name, what, asked, space, unit, particle.index, made_.name(),
                         made, space, unit),
             particle.table, put_right);
-    }
-
-    /// Finds the first harmonic bonds of each particle to the two particles before it; restraints
-    /// come later.
-    void index_bonds() {
-        for (std::vector<double>& lengths : to_earlier_) lengths.assign(masses_.size(), 0);
-        for (ForceText const& force : made_.text.forces()) {
-            if (force.kind != "HarmonicBondForce") continue;
-            for (BondText const& bond : force.bonds) {
-                std::int64_t const back = bond.second - bond.first;
-                if ((back != 1 && back != 2) || bond.first < 0 ||
-                    bond.second >= std::ssize(masses_))
-                    continue;
-                double& length = to_earlier_[static_cast<std::size_t>(back - 1)]
-                                            [static_cast<std::size_t>(bond.second)];
-                if (length == 0) length = bond.length;
-            }
-        }
     }
 
     /// Compares bonds of a chain with the mean of its residues' bonds, those of RNA with the
@@ -372,69 +457,15 @@ class TableCheck {
         return component.is_go() && made > low && made < high;
     }
 
-    std::string const& sequence_in(std::string const& file, std::string const& record) {
-        auto const [entry, is_new] = sequences_.try_emplace({file, record});
-        if (is_new) {
-            Node const at = named(file), name = named(record);
-            entry->second = scene::read_fasta(file, at, {&name, nullptr});
-            std::erase_if(entry->second, [](char c) { return c == '\n' || c == '\r' || c == ' '; });
-        }
-        return entry->second;
-    }
-
-    void compare_sequence(CalvadosComponent const& component, ResidueTable const& table,
-                          PdbChain const& chain, std::string const& file) {
-        std::string const& sequence = sequence_in(file, component.name);
-        std::size_t const beads = component.is_rna() ? calvados_rna::beads_a_nucleotide : 1;
-        if (sequence.size() * beads != chain.size())
-            throw InputError(
-                fmt::format("`{}` has {} residues, and chain {} of {} has {}",
-                            scene::shown(component.name), sequence.size(), scene::shown(chain.name),
-                            made_.topology, chain.size() / beads),
-                shown(file), put_right);
-        for (std::size_t k = 0; k < chain.size(); ++k) {
-            char const letter = sequence[k / beads];
-            ResidueType const* const type = table.find(letter);
-            std::string const& name = chain.residue[k];
-            bool const same = type && (beads == 1 ? type->name == name : name[0] == letter);
-            if (!same)
-                throw InputError(fmt::format("`{}` has {} as residue {}, and {} has {}",
-                                             scene::shown(component.name), letter, k / beads + 1,
-                                             made_.topology, scene::shown(name)),
-                                 shown(file), put_right);
-        }
-    }
-
-    [[noreturn]] void refuse_restraints(std::string const& file, std::vector<BondText> const& asked,
-                                        std::vector<BondText> const& found) const {
-        throw InputError(fmt::format("the {} custom restraints are not the {} bonds of the last "
-                                     "force of bonds of {}",
-                                     asked.size(), found.size(), made_.name()),
-                         shown(file), put_right);
-    }
-
-    void note_shifted_restraints(std::string const& file) const {
-        notes_.push_back(
-            fmt::format("The custom restraints of {} join other molecules than {} names: for the "
-                        "third component "
-                        "and later ones the package counts the molecules of the preceding one "
-                        "alone. The System "
-                        "is simulated as it is.",
-                        made_.name(), file));
-    }
-
-    std::string folder_;
     MadeSystem const& made_;
-    std::vector<std::string>& notes_;
+    TableFiles& files_;
     ForceText const* contacts_;
     std::vector<double> masses_;
     /// Lengths of bonds to the particle before and to the one before that, nm; 0 without one.
     std::array<std::vector<double>, 2> to_earlier_;
     std::optional<double> ph_;
     std::map<std::string, ResidueTable> tables_;
-    std::map<std::pair<std::string, std::string>, std::string> sequences_;
-    std::map<std::string, std::string> missing_;
-    std::set<std::string> differing_;
+    SequenceCheck sequences_;
 };
 
 }  // namespace
@@ -442,14 +473,19 @@ class TableCheck {
 void compare_tables(PackageFile const& config, CalvadosComponents const* components,
                     std::string const& folder, MadeSystem const& made,
                     std::vector<std::string>& notes) {
-    TableCheck check(config, folder, made, notes);
+    TableFiles files(folder, made.name(), notes);
+    TableCheck check(config, made, files);
     if (components != nullptr && components->comparable()) check.compare_chains(*components);
-    if (config.truth("custom_restraints"))
-        check.compare_restraints(
-            config.text("fcustom_restraints", "custom_restraints.txt"),
-            config.text("custom_restraint_type", "harmonic") == "go", components,
-            components == nullptr ? std::vector<Molecules>() : molecules_of(*components, made));
-    check.note_missing();
+    if (config.truth("custom_restraints")) {
+        bool const go = config.text("custom_restraint_type", "harmonic") == "go";
+        auto const molecules =
+            components == nullptr ? std::vector<Molecules>() : molecules_of(*components, made);
+        files.use("fcustom_restraints", config.text("fcustom_restraints", "custom_restraints.txt"),
+                  [&](std::string const& file) {
+                      compare_restraints(file, go, made, components, molecules, notes);
+                  });
+    }
+    files.note_missing();
 }
 
 }  // namespace catena::foreign

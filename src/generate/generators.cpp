@@ -147,7 +147,7 @@ BodyArrays polygon(Polygon const& shape) {
     bodies.joint[0] = FreeJoint::type;
     bodies.axis[0] = Vec3::zero();
     bodies.q[0] = {1, 0, 0, 0};
-    bodies.free_velocity = cross(to_centre, shape.spin);
+    bodies.free_base.velocity = cross(to_centre, shape.spin);
     return bodies;
 }
 

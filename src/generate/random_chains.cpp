@@ -131,8 +131,8 @@ class RandomJoints {
 /// Draws the joint frame, or position and velocity of a free body.
 void random_frame(BodyArrays& bodies, Draws& draws, JointType joint, RandomChain const& chain) {
     if (floats(joint)) {
-        bodies.free_position = draws.in_cube(1);
-        bodies.free_velocity = draws.in_cube(1);
+        bodies.free_base.position = draws.in_cube(1);
+        bodies.free_base.velocity = draws.in_cube(1);
         bodies.rotation.push_back(Mat3::identity());
         bodies.translation.push_back(Vec3::zero());
         return;

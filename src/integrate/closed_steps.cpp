@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamics/rigid_start.hpp"
+#include "dynamics/rigid/rigid_start.hpp"
 #include "dynamics/stays_open.hpp"
 #include "error.hpp"
 #include "integrate/step_failure.hpp"
@@ -133,7 +133,7 @@ double ClosedSteps::rounding_at(ConstrainedIntegrator::Kept const& kept) const {
             largest = std::max(largest, std::abs(x));
         bool const links = group.beads || group.linked;  // bodies on joints have no link lengths
         for (std::int64_t k = 0; links && k < group.size; ++k)
-            if (double const length = group.length.view().at(k, 0); length > 0)
+            if (double const length = group.joints.length.view().at(k, 0); length > 0)
                 shortest = std::min(shortest, length);
         double const length =
             links ? -communicator.max(-shortest) : reach_of_joints(group, communicator);

@@ -94,7 +94,7 @@ void ConstrainedIntegrator::observe() {
 void ConstrainedIntegrator::begin_trial(AbsoluteDynamics& group, int sweeps, bool thermal) const {
     if (thermal)
         group.draw_velocities(scheme_.kt, scheme_.seed,
-                              std::vector<bool>(group.group().chain.size(), true));
+                              std::vector<bool>(group.group().chains.size(), true));
     group.kick(pending_ * scheme_.step);
     group.drift(scheme_.step / drifts(), sweeps);
 }

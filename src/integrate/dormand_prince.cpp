@@ -44,7 +44,7 @@ class DormandPrinceSteps final : public JointIntegrator {
     DormandPrinceSteps(ChainSystem& system, double tolerance, double step)
         : system_(system), groups_(system.joint()), tolerance_(tolerance), control_(step) {
         has_tips_ = std::any_of(groups_.begin(), groups_.end(),
-                                [](JointDynamics const* g) { return g->group().has_tips(); });
+                                [](JointDynamics const* g) { return g->group().ends.has_tips(); });
     }
     /// Closing tips changes the state, so that the accelerations at the step's end are no longer
     /// valid.

@@ -22,12 +22,12 @@ class ProgramIntegrator final : public JointIntegrator {
     }
     void set_origin(double time) override { origin_ = time; }
     bool carries_rates() const override { return program_.saves(); }
-    void restored(Checkpoint const&) override { ready_ = true; }
+    void restored(Checkpoint const&) override { first_ = {}; }
     void prepare() override {
         if (!program_.saves()) return;
-        if (ready_) return make_ghosts(system_);
-        run(program_.prepare, 0);
-        ready_ = true;
+        if (first_.empty()) return make_ghosts(system_);
+        run(first_, 0);
+        first_ = {};
     }
     void step(double h) override {
         prepare();
@@ -62,7 +62,8 @@ class ProgramIntegrator final : public JointIntegrator {
     JointProgram program_;
     JointThermostat thermostat_;
     double origin_ = 0;
-    bool ready_ = false;
+    /// Operations before the first step that are still to be done.
+    std::span<JointOperation const> first_ = program_.prepare;
 };
 
 }  // namespace

@@ -51,7 +51,7 @@ void OpenMmEvaluation::order_by_rank(Scene const& scene) {
     for (int rank = 0; rank < communicator_.size(); ++rank) {
         for (ChainGroup const* group : groups_)
             for (dca::Piece const& piece : dca::pieces_of(group->partition, rank)) {
-                int const chain = group->chain[piece.chain];
+                int const chain = group->chains[piece.chain].in_scene;
                 for (std::int64_t i = bead_of(chain, piece.body);
                      i < bead_of(chain, piece.body + piece.count); ++i)
                     order.push_back(i);

@@ -57,8 +57,9 @@ OwnBodies Snapshots::own(bool joint_forces, bool joint_states,
         auto const row = [&](std::int64_t k, auto const& put) {
             Vector<double, 4> const q = motion.orientation[k];
             Mat3 const rotation = to_matrix(Quat{q[0], q[1], q[2], q[3]});
-            Vec3 const omega = motion.omega[k], x = motion.origin[k] - rotation * group.r1[k];
-            Vec3 const v = rotation * (motion.velocity[k] - cross(omega, group.r1[k]));
+            Vec3 const omega = motion.omega[k],
+                       x = motion.origin[k] - rotation * group.bodies.r1[k];
+            Vec3 const v = rotation * (motion.velocity[k] - cross(omega, group.bodies.r1[k]));
             put(x.data, 3);
             put(v.data, 3);
             put(q.data, 4);

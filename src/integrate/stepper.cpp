@@ -114,7 +114,7 @@ class JointStepper final : public Stepper {
     bool has_tips() const {
         auto const groups = system_.joint();
         return std::any_of(groups.begin(), groups.end(),
-                           [](JointDynamics const* g) { return g->group().has_tips(); });
+                           [](JointDynamics const* g) { return g->group().ends.has_tips(); });
     }
 
     /// Sums over all steps so far.
@@ -232,8 +232,8 @@ class ConstrainedStepper final : public Stepper {
     void draw_velocities(DynamicsSpec const& d) {
         for (AbsoluteDynamics* group : system_.absolute()) {
             std::vector<bool> thermal;
-            for (int const chain : group->group().chain)
-                thermal.push_back(system_.scene().chains[chain].velocities ==
+            for (GroupChain const& chain : group->group().chains)
+                thermal.push_back(system_.scene().chains[chain.in_scene].velocities ==
                                   StartVelocities::thermal);
             if (std::find(thermal.begin(), thermal.end(), true) == thermal.end()) continue;
             group->assemble_matrices();

@@ -40,7 +40,7 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend,
 /// Throws InputError if articulated handles do not support this group. Validation has already
 /// refused chains with links or closed tips.
 void refuse_articulated(ChainGroup const& group, bool implicit) {
-    if (!group.beads && !group.linked && !group.has_tips() && group.axes == Axes::joint &&
+    if (!group.beads && !group.linked && !group.ends.has_tips() && group.axes == Axes::joint &&
         !implicit)
         return;
     throw InputError(
@@ -129,7 +129,7 @@ std::vector<ChainGroup const*> SystemChains::bead_groups() const {
     std::vector<ChainGroup const*> found;
     for (bool const absolute : {true, false})
         for (auto const& group : groups_)
-            if (is_absolute(*group) == absolute && (group->beads || group->carried_in_scene))
+            if (is_absolute(*group) == absolute && (group->beads || group->carried.in_scene))
                 found.push_back(group.get());
     return found;
 }

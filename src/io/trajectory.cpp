@@ -52,6 +52,117 @@ struct FrameContext {
 };
 static_assert(std::is_trivially_copyable_v<FrameContext>, "goes from rank to rank as it lies");
 
+/// True if a part of a frame lies within the arrays that the contents require and has all of them.
+bool arrays_fit(Frame const& part, TrajectoryContents const& contents) {
+    std::size_t const sites = part.positions.size(), bodies = part.orientations.size();
+    auto const of_sites = [&](std::size_t size, bool wanted) { return !wanted || size == sites; };
+    auto const of_bodies = [&](std::size_t size, bool wanted) { return !wanted || size == bodies; };
+    return part.first_site + sites <= contents.sites &&
+           part.first_body + bodies <= contents.bodies &&
+           of_sites(part.velocities.size(), contents.velocities) &&
+           of_sites(part.joint_forces.size(), contents.joint_forces) &&
+           of_bodies(part.body_positions.size(), contents.body_states) &&
+           of_bodies(part.body_velocities.size(), contents.body_states) &&
+           of_bodies(part.angular_velocities.size(), contents.body_states) &&
+           of_bodies(part.joint_positions.size(), contents.joint_states) &&
+           of_bodies(part.joint_rates.size(), contents.joint_states);
+}
+
+/// Separates pairs [torque, force] into torques and forces.
+std::pair<std::vector<double>, std::vector<double>> halves_of(
+    std::span<Frame const> parts, std::vector<Vector<double, 6>> Frame::* wrenches) {
+    std::pair<std::vector<double>, std::vector<double>> halves;
+    for (Frame const& part : parts)
+        for (Vector<double, 6> const& wrench : part.*wrenches) {
+            halves.first.insert(halves.first.end(), wrench.data, wrench.data + 3);
+            halves.second.insert(halves.second.end(), wrench.data + 3, wrench.data + 6);
+        }
+    return halves;
+}
+
+/// Row of a frame in the datasets of a file.
+struct FrameRow {
+    Place place;
+    hsize_t frame;
+    hid_t transfer;
+
+    /// Writes the values of all parts by a single call of HDF5.
+    template <class Value>
+    void put(Series& series, std::span<Series::Part const> where, std::span<Frame const> parts,
+             std::vector<Value> Frame::* values) const {
+        if (parts.size() == 1)
+            return series.put(place, frame, where, (parts[0].*values).data(), transfer);
+        std::vector<Value> joined;
+        for (Frame const& part : parts)
+            joined.insert(joined.end(), (part.*values).begin(), (part.*values).end());
+        series.put(place, frame, where, joined.data(), transfer);
+    }
+};
+
+/// Writes the arrays of the parts' sites and bodies.
+void put_parts(FrameRow const& row, TrajectorySeries& series, TrajectoryContents const& contents,
+               std::span<Frame const> parts) {
+    std::vector<Series::Part> sites, bodies;
+    for (Frame const& part : parts) {
+        sites.push_back({part.first_site, part.positions.size()});
+        bodies.push_back({part.first_body, part.orientations.size()});
+    }
+    row.put(series.position, sites, parts, &Frame::positions);
+    if (contents.velocities) row.put(series.velocity, sites, parts, &Frame::velocities);
+    if (contents.bodies > 0) row.put(series.orientation, bodies, parts, &Frame::orientations);
+    if (contents.body_states) {
+        row.put(series.body_position, bodies, parts, &Frame::body_positions);
+        row.put(series.body_velocity, bodies, parts, &Frame::body_velocities);
+        row.put(series.angular_velocity, bodies, parts, &Frame::angular_velocities);
+    }
+    if (contents.joint_states) {
+        row.put(series.joint_position, bodies, parts, &Frame::joint_positions);
+        row.put(series.joint_rate, bodies, parts, &Frame::joint_rates);
+    }
+    if (!contents.joint_forces) return;
+    auto const [torque, force] = halves_of(parts, &Frame::joint_forces);
+    series.torque.put(row.place, row.frame, sites, torque.data(), row.transfer);
+    series.force.put(row.place, row.frame, sites, force.data(), row.transfer);
+}
+
+/// Returns the steps of the frames that are complete.
+std::vector<std::int64_t> read_steps(TrajectorySeries& series, Place const& place) {
+    hsize_t whole = series.step.frames(place);
+    std::vector<std::int64_t> steps(whole);
+    if (whole > 0)
+        check(H5Dread(series.step.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                      steps.data()),
+              place.file, "read the steps");
+    for (Series* each : series.present()) whole = std::min(whole, each->frames(place));
+    steps.resize(whole);
+    return steps;
+}
+
+/// Reads, in a trial process, all that a continuation reads and a number of each last row.
+void look_through(std::string const& file_name, TrajectoryContents const& contents) {
+    File const file(
+        check(H5Fopen(file_name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), file_name, writing));
+    Place const place{file.get(), file_name, writing};
+    TrajectorySeries series = open_trajectory(place, contents);
+    read_steps(series, place);
+    for (Series const* each : series.present()) each->look_at_last(place);
+}
+
+/// Returns the number of frames up to the continuation's step. Throws InputError if frames before
+/// it are lost.
+hsize_t frames_kept(std::vector<std::int64_t> const& steps, Continuation const& go_on,
+                    std::string const& file_name) {
+    auto const kept = std::find_if(steps.begin(), steps.end(),
+                                   [&](std::int64_t step) { return step > go_on.after_step; }) -
+                      steps.begin();
+    if (kept < go_on.records)
+        throw InputError("the trajectory has lost frames: " + std::to_string(kept) + " of the " +
+                             std::to_string(go_on.records) + " before the checkpoint are there",
+                         file_name,
+                         std::string("restore the whole file, or ") + Continuation::way_beside);
+    return static_cast<hsize_t>(kept);
+}
+
 /// Writer of one H5MD file, by one rank or by all ranks together.
 class H5mdWriter final : public TrajectoryWriter {
   public:
@@ -106,7 +217,9 @@ class H5mdWriter final : public TrajectoryWriter {
 
     void put(std::span<Frame const> parts) override {
         for (Frame const& part : parts) require_fit(part);
-        whole_or_as_flushed([&] { put_parts(parts); });
+        whole_or_as_flushed([&] {
+            put_parts({place(), at_.frames, writers_->transfer()}, series_, at_.contents, parts);
+        });
     }
     void end(std::vector<Vector<double, 6>> const& tip_forces) override {
         bool const whole =
@@ -158,29 +271,11 @@ class H5mdWriter final : public TrajectoryWriter {
 
     /// Throws ComputationError if the arrays of a part do not fit the topology or the parts before.
     void require_fit(Frame const& part) {
-        TrajectoryContents const& contents = at_.contents;
-        std::size_t const sites = part.positions.size(), bodies = part.orientations.size();
-        auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == sites; };
         bool const in_order =
             writers_->are_several() || (part.first_site == sites_ && part.first_body == bodies_);
-        if (!in_order || part.first_site + sites > contents.sites ||
-            part.first_body + bodies > contents.bodies ||
-            !fits(part.velocities.size(), contents.velocities) ||
-            !fits(part.joint_forces.size(), contents.joint_forces) || !states_fit(part))
-            refuse_arrays();
-        sites_ += sites;
-        bodies_ += bodies;
-    }
-
-    /// True if the arrays of bodies have the sizes that the contents require.
-    bool states_fit(Frame const& part) const {
-        std::size_t const bodies = part.orientations.size();
-        auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == bodies; };
-        return fits(part.body_positions.size(), at_.contents.body_states) &&
-               fits(part.body_velocities.size(), at_.contents.body_states) &&
-               fits(part.angular_velocities.size(), at_.contents.body_states) &&
-               fits(part.joint_positions.size(), at_.contents.joint_states) &&
-               fits(part.joint_rates.size(), at_.contents.joint_states);
+        if (!in_order || !arrays_fit(part, at_.contents)) refuse_arrays();
+        sites_ += part.positions.size();
+        bodies_ += part.orientations.size();
     }
 
     /// Reserves disk space for the next frame. Collective.
@@ -191,60 +286,6 @@ class H5mdWriter final : public TrajectoryWriter {
                 more += series->growth(place(), at_.frames);
             writers_->make_room(file_, more, name_, writing);
         });
-    }
-
-    /// Writes the arrays of the parts' sites and bodies.
-    void put_parts(std::span<Frame const> parts) {
-        std::vector<Series::Part> sites, bodies;
-        for (Frame const& part : parts) {
-            sites.push_back({part.first_site, part.positions.size()});
-            bodies.push_back({part.first_body, part.orientations.size()});
-        }
-        put_all(series_.position, sites, parts, &Frame::positions);
-        if (at_.contents.velocities) put_all(series_.velocity, sites, parts, &Frame::velocities);
-        if (at_.contents.bodies > 0)
-            put_all(series_.orientation, bodies, parts, &Frame::orientations);
-        put_states(bodies, parts);
-        if (!at_.contents.joint_forces) return;
-        auto const [torque, force] = halves_of(parts, &Frame::joint_forces);
-        series_.torque.put(place(), at_.frames, sites, torque.data(), writers_->transfer());
-        series_.force.put(place(), at_.frames, sites, force.data(), writers_->transfer());
-    }
-
-    void put_states(std::span<Series::Part const> bodies, std::span<Frame const> parts) {
-        if (at_.contents.body_states) {
-            put_all(series_.body_position, bodies, parts, &Frame::body_positions);
-            put_all(series_.body_velocity, bodies, parts, &Frame::body_velocities);
-            put_all(series_.angular_velocity, bodies, parts, &Frame::angular_velocities);
-        }
-        if (!at_.contents.joint_states) return;
-        put_all(series_.joint_position, bodies, parts, &Frame::joint_positions);
-        put_all(series_.joint_rate, bodies, parts, &Frame::joint_rates);
-    }
-
-    /// Writes the values of all parts by a single call of HDF5.
-    template <class Value>
-    void put_all(Series& series, std::span<Series::Part const> where, std::span<Frame const> parts,
-                 std::vector<Value> Frame::* values) {
-        if (parts.size() == 1)
-            return series.put(place(), at_.frames, where, (parts[0].*values).data(),
-                              writers_->transfer());
-        std::vector<Value> joined;
-        for (Frame const& part : parts)
-            joined.insert(joined.end(), (part.*values).begin(), (part.*values).end());
-        series.put(place(), at_.frames, where, joined.data(), writers_->transfer());
-    }
-
-    /// Separates pairs [torque, force] into torques and forces.
-    static std::pair<std::vector<double>, std::vector<double>> halves_of(
-        std::span<Frame const> parts, std::vector<Vector<double, 6>> Frame::* wrenches) {
-        std::pair<std::vector<double>, std::vector<double>> halves;
-        for (Frame const& part : parts)
-            for (Vector<double, 6> const& wrench : part.*wrenches) {
-                halves.first.insert(halves.first.end(), wrench.data, wrench.data + 3);
-                halves.second.insert(halves.second.end(), wrench.data + 3, wrench.data + 6);
-            }
-        return halves;
     }
 
     /// Writes the values of the whole frame, its step last, and flushes if that is due.
@@ -288,7 +329,8 @@ class H5mdWriter final : public TrajectoryWriter {
         if (!std::filesystem::exists(name_))
             throw InputError("there is no trajectory to continue", name_,
                              std::string("restore it, or ") + Continuation::way_beside);
-        if (std::string const end = trial([&] { look_through(); }, limits_for_file(name_));
+        if (std::string const end =
+                trial([&] { look_through(name_, at_.contents); }, limits_for_file(name_));
             !end.empty())
             throw InputError("the trajectory is damaged, HDF5 fails to read it: " + end, name_,
                              Continuation::way_beside);
@@ -300,42 +342,14 @@ class H5mdWriter final : public TrajectoryWriter {
         std::vector<std::int64_t> steps;
         try {
             series_ = open_trajectory(place(), at_.contents);
-            steps = read_steps();
+            steps = read_steps(series_, place());
         } catch (ComputationError const& error) {
             throw InputError("the trajectory is damaged, " + std::string(error.what()), name_,
                              Continuation::way_beside);
         }
-        auto const kept = std::find_if(steps.begin(), steps.end(),
-                                       [&](std::int64_t step) { return step > go_on.after_step; });
-        if (kept - steps.begin() < go_on.records)
-            throw InputError(
-                "the trajectory has lost frames: " + std::to_string(kept - steps.begin()) +
-                    " of the " + std::to_string(go_on.records) + " before the checkpoint are there",
-                name_, std::string("restore the whole file, or ") + Continuation::way_beside);
-        at_.frames = static_cast<hsize_t>(kept - steps.begin());
+        at_.frames = frames_kept(steps, go_on, name_);
         if (at_.frames > 0) at_.last_step = steps[at_.frames - 1];
         for (Series* series : series_.present()) series->cut(place(), at_.frames);
-    }
-
-    /// Reads, in a trial process, all that a continuation reads and a number of each last row.
-    void look_through() {
-        file_ = File(check(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), name_, writing));
-        series_ = open_trajectory(place(), at_.contents);
-        read_steps();
-        for (Series const* series : series_.present()) series->look_at_last(place());
-    }
-
-    /// Returns the steps of the frames that are complete.
-    std::vector<std::int64_t> read_steps() {
-        hsize_t whole = series_.step.frames(place());
-        std::vector<std::int64_t> steps(whole);
-        if (whole > 0)
-            check(H5Dread(series_.step.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                          steps.data()),
-                  name_, "read the steps");
-        for (Series* series : series_.present()) whole = std::min(whole, series->frames(place()));
-        steps.resize(whole);
-        return steps;
     }
 
     /// Throws ComputationError for a frame that cannot be written.

@@ -14,7 +14,7 @@ struct FreeJoint : JointDefaults {
     static constexpr bool quaternion = true, floats = true, absolute = true;
     static constexpr PlaneRole plane = PlaneRole::starts;
 
-    /// The rotation alone: the position is BodyArrays::free_position.
+    /// The rotation alone: the position is that of BodyArrays::free_base.
     static JointDisplacement displacement(JointShape const&, std::array<double, 4> const& q) {
         return {{q[0], q[1], q[2], q[3]}, Vec3::zero()};
     }

@@ -42,7 +42,7 @@ inline constexpr std::array<Twist, 3> rotations{
     {{{{1, 0, 0}}, {{0, 0, 0}}}, {{{0, 1, 0}}, {{0, 0, 0}}}, {{{0, 0, 1}}, {{0, 0, 0}}}}};
 
 /// {c, s, rate}: a coordinate q rotates the joint by c rate q about its axis and slides it by
-/// s rate q; c^2 + s^2 = 1 (ChainGroup::screw).
+/// s rate q; c^2 + s^2 = 1 (LocalJoints::screw).
 inline constexpr Vec3 pure_rotation{{1, 0, 1}};
 
 /// Order of the directions of a joint's handles. Numbers 0-2 stand for forces along the joint's

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -58,11 +59,12 @@ struct CarriedBeadsView {
 /// Body of each of the group's carried beads.
 inline std::vector<std::int64_t> bodies_of_beads(ChainGroup const& group) {
     std::vector<std::int64_t> bodies;
-    bodies.reserve(static_cast<std::size_t>(group.carried_beads()));
-    for (std::size_t k = 0; k + 1 < group.bead_offset.size(); ++k)
-        bodies.insert(bodies.end(),
-                      static_cast<std::size_t>(group.bead_offset[k + 1] - group.bead_offset[k]),
-                      static_cast<std::int64_t>(k));
+    bodies.reserve(static_cast<std::size_t>(group.carried.count()));
+    for (std::size_t k = 0; k + 1 < group.carried.offset.size(); ++k)
+        bodies.insert(
+            bodies.end(),
+            static_cast<std::size_t>(group.carried.offset[k + 1] - group.carried.offset[k]),
+            static_cast<std::int64_t>(k));
     return bodies;
 }
 
@@ -73,15 +75,15 @@ class CarriedBeadsIn {
   public:
     /// The group must outlive this object.
     CarriedBeadsIn(ChainGroup const& group, Space const& space)
-        : any_(group.carried_beads() > 0),
-          in_scene_(group.carried_in_scene),
+        : any_(group.carried.count() > 0),
+          in_scene_(group.carried.in_scene),
           space_(space),
           bodies_(bodies_of_beads(group)),
-          offset_(group.bead_offset),
+          offset_(group.carried.offset),
           body_(bodies_),
-          place_(group.bead_place),
-          position_(group.carried_beads()),
-          force_(group.carried_beads()) {}
+          place_(group.carried.place),
+          position_(group.carried.count()),
+          force_(group.carried.count()) {}
 
     /// True if this rank has carried beads.
     bool any() const { return any_; }
@@ -98,15 +100,17 @@ class CarriedBeadsIn {
         return any_ ? space_.pull(position_, position_mirror_) : View<3>{};
     }
     View<3> bead_forces() {
-        forces_are_out_ = any_;
-        return any_ ? space_.pull(force_, force_mirror_) : View<3>{};
+        if (!any_) return {};
+        shown_ = space_.pull(force_, force_mirror_);
+        return *shown_;
     }
     void take_bead_forces() {
-        if (std::exchange(forces_are_out_, false)) space_.push(force_, force_mirror_);
+        if (std::exchange(shown_, std::nullopt)) space_.push(force_, force_mirror_);
     }
 
   private:
-    bool any_, in_scene_, forces_are_out_ = false;
+    bool any_, in_scene_;
+    std::optional<View<3>> shown_;  // the host's copy of the forces, which it may have changed
     Space space_;
     std::vector<std::int64_t> bodies_;  // On the host a List is a view.
     typename Space::template List<std::int64_t> offset_, body_;

@@ -9,17 +9,17 @@ JointState make_joint_state(ChainGroup const& group, Scene const& scene) {
     JointState state(group);
     for (std::size_t p = 0; p < group.pieces.size(); ++p) {
         dca::Piece const& piece = group.pieces[p];
-        BodyArrays const& b = scene.chains[group.chain[piece.chain]].bodies;
+        BodyArrays const& b = scene.chains[group.chains[piece.chain].in_scene].bodies;
         for (std::int64_t i = 0; i < piece.count; ++i) {
             auto const& q = b.q[piece.body + i];
             state.q.set(piece.local + i, {{q[0], q[1], q[2], q[3]}});
             state.qd.set(piece.local + i, b.qd[piece.body + i]);
         }
-        state.base_position.set(static_cast<std::int64_t>(p), b.free_position);
-        state.base_velocity.set(static_cast<std::int64_t>(p), b.free_velocity);
+        state.base_position.set(static_cast<std::int64_t>(p), b.free_base.position);
+        state.base_velocity.set(static_cast<std::int64_t>(p), b.free_base.velocity);
     }
-    for (LocalDrive const& d : group.drives) {
-        bool const two = has_two_coordinates(group.joint[d.body]);
+    for (LocalDrive const& d : group.joints.drives) {
+        bool const two = has_two_coordinates(group.joints.type[d.body]);
         state.q.set(d.body, {{scene::value_at(d.first, 0), two ? scene::value_at(d.second, 0) : 0.0,
                               0, 0}});
         state.qd.set(d.body,

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "dca/host_space.hpp"
-#include "kinematics/joint_scan.hpp"
+#include "kinematics/joints_in.hpp"
+#include "kinematics/scan_in.hpp"
 #include "tree/frontier_exchange.hpp"
 
 namespace catena {
@@ -45,11 +45,11 @@ struct MotionFields {
           omega(group.size),
           origin(group.size),
           velocity(group.size) {
-        if (!group.moving_meeting()) return;
+        if (!group.joints.moving_meeting()) return;
         r2 = typename Space::template FieldOf<3>(group.size);
         axes2 = typename Space::template FieldOf<6>(group.size);
-        fill(space, r2, group.r2);
-        fill(space, axes2, group.axes2);
+        fill(space, r2, group.bodies.r2);
+        fill(space, axes2, group.bodies.axes2);
     }
     MotionView view() {
         return {joint_turn.view(), orientation.view(), omega.view(), origin.view(),
@@ -58,18 +58,10 @@ struct MotionFields {
 };
 using BodyMotion = MotionFields<HostSpace>;
 
-/// First body (local) of each of the group's pieces.
-std::vector<std::int64_t> first_bodies(ChainGroup const&);
-/// Storage slot of each body's run.
-std::vector<std::int32_t> run_slots(ChainGroup const&);
-
 /// Computes the motion of every body from the state. Chains that span several ranks make its
 /// operations collective: all ranks must call them.
 template <class Space>
 class JointKinematics {
-    template <int D>
-    using FieldOf = typename Space::template FieldOf<D>;
-
   public:
     /// Messages to the inboard neighbour about this rank's first body, sent together with the
     /// exchange of motions; either may be empty. LoadsForNeighbour holds the loads of its inboard
@@ -82,73 +74,21 @@ class JointKinematics {
         : group_(group),
           space_(space),
           communicator_(communicator),
-          first_body_(first_bodies(group)),
-          slot_of_body_(run_slots(group)),
-          model_(space.model(group)),
-          bodies_(model_.view()),
-          joint_(group.joint),
-          piece_(first_body_),
-          drive_(group.drives),
-          joint_rotation_(group.joint_rotation),
-          joint_translation_(group.joint_translation),
-          first_axis_(group.first_axis),
-          tree_(group.schedule.runs, group.schedule.levels, group.schedule.roots,
-                group.schedule.slots),
-          top_(no_runs_, group.schedule.top_levels, group.schedule.top_roots, group.schedule.slots),
-          runs_(group.schedule.runs),
-          roots_(group.schedule.roots),
-          top_roots_(group.schedule.top_roots),
-          slot_(slot_of_body_),
-          rotation_(group.size),
-          omega_(group.size),
-          translation_(group.size),
-          velocity_(group.size),
-          next_meeting_(group.moving_meeting() ? 1 : 0),
+          joints_(group, space),
+          arrays_(group),
+          trees_(group.schedule),
           shared_(group.schedule, dca::RecordNumbers<Motion>::width, space, communicator,
-                  MeetingForNeighbour::numbers + LoadsForNeighbour::numbers),
-          whole_(group.schedule.slots),
-          before_(group.schedule.slots) {
+                  MeetingForNeighbour::numbers + LoadsForNeighbour::numbers) {
         begin_at_ground();
     }
 
-    /// View of the group's joints.
-    JointsView joints() const {
-        return {group_.size,
-                joint_.data(),
-                bodies_.is_first,
-                bodies_.is_last,
-                group_.planar,
-                group_.has_screws,
-                bodies_.r1,
-                bodies_.axes1,
-                joint_rotation_.view(),
-                joint_translation_.view(),
-                first_axis_.view(),
-                bodies_.screw,
-                piece_.data(),
-                std::ssize(first_body_),
-                drive_.data(),
-                std::ssize(group_.drives)};
-    }
-    /// Constant properties of the bodies, shared with the solver of the same Space.
-    typename Space::Model const& model() const { return model_; }
-    GroupView const& bodies() const { return bodies_; }
+    JointsIn<Space> const& joints() const { return joints_; }
     /// Rotation of each body relative to its inboard body, as a scan leaves it
     /// (JointScan::rotation).
-    ConstView<4> rotations() { return rotation_.view(); }
+    ConstView<4> rotations() { return arrays_.rotation(); }
     /// The scan that reads `state` and writes `motion`.
     JointScan scan(StateView const& state, MotionView const& motion) {
-        return {joints(),
-                state,
-                motion,
-                rotation_.view(),
-                omega_.view(),
-                translation_.view(),
-                velocity_.view(),
-                slot_.data(),
-                whole_.view(),
-                before_.view(),
-                next_meeting_.view()};
+        return arrays_.scan(joints_.view(), state, motion);
     }
 
     /// Computes the motion of all bodies. `with_positions`: fills origin and velocity as well.
@@ -167,7 +107,7 @@ class JointKinematics {
     /// Overload without an action per body.
     template <bool positions>
     void sweep(JointScan const& s, LoadsForNeighbour const& loads) {
-        sweep<positions>(s, tree_, loads);
+        sweep<positions>(s, trees_.own(), loads);
     }
     /// Overload over another tree: `tree` is the group's tree less the runs that JointScan::follow
     /// has already finished.
@@ -189,8 +129,8 @@ class JointKinematics {
     /// Runs `scan` over all runs, then last(run) for each run.
     template <class Scan, class Last>
     void sweep_runs(Scan const& scan, LoadsForNeighbour const& loads, Last const& last) {
-        sweep_with(scan, tree_, loads);
-        space_.over(runs_, last);
+        sweep_with(scan, trees_.own(), loads);
+        space_.over(trees_.runs(), last);
     }
 
     // Members below are public because nvcc accepts device lambdas in public members only.
@@ -206,20 +146,20 @@ class JointKinematics {
     /// Prepares the message with the meeting point and axes of this rank's first joint. The message
     /// is empty unless meeting frames move and a neighbour shares the chain.
     MeetingForNeighbour shown_meeting(JointScan const& s) {
-        View<9> const meeting = next_meeting_.view();
-        MeetingForNeighbour const shown{meeting, 0, group_.neighbour_inboard,
-                                        meeting, 1, group_.neighbour_outboard};
-        if (!group_.moving_meeting() || !shown) return MeetingForNeighbour::none();
+        View<9> const meeting = arrays_.next_meeting();
+        MeetingForNeighbour const shown{meeting, 0, group_.neighbours.inboard,
+                                        meeting, 1, group_.neighbours.outboard};
+        if (!group_.joints.moving_meeting() || !shown) return MeetingForNeighbour::none();
         space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
         return shown;
     }
     /// Sets the motion before each chain's first body to rest relative to the ground.
     void begin_at_ground() {
-        MotionRecords const before = before_.view();
-        space_.over(roots_, [before] CATENA_LAMBDA(dca::Root const& root) {
+        MotionRecords const before = arrays_.before();
+        space_.over(trees_.roots(), [before] CATENA_LAMBDA(dca::Root const& root) {
             before.store(root.slot, Motion::none());
         });
-        space_.over(top_roots_, [before] CATENA_LAMBDA(dca::Root const& root) {
+        space_.over(trees_.top_roots(), [before] CATENA_LAMBDA(dca::Root const& root) {
             before.store(root.slot, Motion::none());
         });
     }
@@ -236,44 +176,23 @@ class JointKinematics {
     template <class Scan>
     void pass(Scan const& scan, typename Space::ScanTree const& tree,
               MeetingForNeighbour const& meeting, LoadsForNeighbour const& loads) {
-        if (shared_.both_passes(space_, communicator_, shown(scan), tree, top_, scan, meeting,
-                                loads))
+        if (shared_.both_passes(space_, communicator_, shown(scan), tree, trees_.top(), scan,
+                                meeting, loads))
             return;
         space_.climb(tree, scan);
         shared_.show(space_, shown(scan));
         shared_.bring(space_, communicator_, shown(scan), meeting, loads);
-        space_.climb_and_descend(top_, scan.motions());
+        space_.climb_and_descend(trees_.top(), scan.motions());
         space_.descend(tree, scan);
     }
 
     ChainGroup const& group_;
     Space space_;
     Communicator const& communicator_;
-    std::vector<std::int64_t> first_body_;
-    std::vector<std::int32_t> slot_of_body_;
-    typename Space::Model model_;
-    GroupView bodies_;
-    typename Space::template List<JointType> joint_;
-    typename Space::template List<std::int64_t> piece_;
-    typename Space::template List<LocalDrive> drive_;
-    typename Space::template Fixed<4> joint_rotation_;
-    typename Space::template Fixed<3> joint_translation_, first_axis_;
-    std::vector<dca::Run> no_runs_;
-    /// tree_ holds this rank's units; top_ holds the tree above the units of chains that ranks
-    /// share.
-    typename Space::ScanTree tree_, top_;
-    typename Space::template List<dca::Run> runs_;
-    typename Space::template List<dca::Root> roots_, top_roots_;
-    typename Space::template List<std::int32_t> slot_;
-    /// Relative motions of bodies, as JointScan stores them.
-    FieldOf<4> rotation_;
-    FieldOf<3> omega_, translation_, velocity_;
-    /// Entry 0 is sent to the inboard neighbour, entry 1 is received from the outboard one.
-    FieldOf<9> next_meeting_;
+    JointsIn<Space> joints_;
+    ScanArrays<Space> arrays_;
+    ScanTrees<Space> trees_;
     dca::FrontierExchange<Space> shared_;
-    /// Motions of each slot: that across the segment, and that of the body before it relative to
-    /// the ground.
-    typename Space::template Records<Motion, dca::Order::plain> whole_, before_;
 };
 
 }  // namespace catena

@@ -151,8 +151,8 @@ struct JointsView {
     CATENA_HD Vec3At<Place> axis(Place k) const {
         return {{read(axes1, k, 3), read(axes1, k, 4), read(axes1, k, 5)}};
     }
-    /// {c, s, rate, order} of ChainGroup::screw: a coordinate q rotates the joint by c rate q about
-    /// its axis and slides it by s rate q.
+    /// {c, s, rate, order} of LocalJoints::screw: a coordinate q rotates the joint by c rate q
+    /// about its axis and slides it by s rate q.
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, 4> screw_of(Place k) const {
         using Real = RealAt<Place>;

@@ -16,7 +16,7 @@ struct HeldTip {
     std::int64_t body = -1;
     Vec3 anchor;             // Attachment point on the ground, W.
     double length = 0;       // Length of the link, nm.
-    std::int64_t ring = -1;  // Index in ChainGroup::rings; -1 if attached to the ground.
+    std::int64_t ring = -1;  // Index in LocalEnds::rings; -1 if attached to the ground.
     /// First body of the ring, local; -1 if it is on another rank.
     std::int64_t first = -1;
 };

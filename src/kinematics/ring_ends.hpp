@@ -14,20 +14,20 @@ template <int D, class Of>
 std::vector<Vector<double, D>> beyond_tips_of(ChainGroup const& group,
                                               Communicator const& communicator,
                                               Of const& of_first) {
-    std::vector<Vector<double, D>> all(group.tips.size(), Vector<double, D>::zero());
-    for (LocalRing const& ring : group.rings) {
+    std::vector<Vector<double, D>> all(group.ends.tips.size(), Vector<double, D>::zero());
+    for (LocalRing const& ring : group.ends.rings) {
         Vector<double, D> const own =
             ring.first >= 0 ? of_first(ring.first) : Vector<double, D>::zero();
         Vector<double, D> found = own;
         if (!ring.is_whole())
             exchange(communicator, own.data, ring.neighbour, found.data, ring.neighbour);
-        if (ring.last >= 0) all[group.tip_index(ring.last)] = found;
+        if (ring.last >= 0) all[group.ends.tip_index(ring.last)] = found;
     }
     return all;
 }
 
 /// Vectors of rings' end bodies, such as positions: one of the first body and one of the last.
-/// Indexed as ChainGroup::rings.
+/// Indexed as LocalEnds::rings.
 struct RingEndsView {
     View<3> first, last;
 };
@@ -41,22 +41,23 @@ class RingEnds {
         : group_(group),
           space_(space),
           communicator_(communicator),
-          rings_(group.rings),
-          first_(std::ssize(group.rings)),
-          last_(std::ssize(group.rings)) {}
+          rings_(group.ends.rings),
+          first_(std::ssize(group.ends.rings)),
+          last_(std::ssize(group.ends.rings)) {}
 
     RingEndsView view() { return {first_.view(), last_.view()}; }
     /// Copies the vectors of end bodies from fields over bodies, and exchanges them between ranks.
     /// Collective if a ring spans two ranks.
     void take(View<3> of_first, View<3> of_last) {
-        if (group_.rings.empty()) return;
-        space_.for_each(std::ssize(group_.rings), [ring = rings_.data(), ends = view(), of_first,
-                                                   of_last] CATENA_LAMBDA(std::int64_t i) {
-            if (ring[i].first >= 0) ends.first.store(i, of_first.load(ring[i].first));
-            if (ring[i].last >= 0) ends.last.store(i, of_last.load(ring[i].last));
-        });
-        for (std::int64_t i = 0; i < std::ssize(group_.rings); ++i) {
-            LocalRing const& ring = group_.rings[static_cast<std::size_t>(i)];
+        if (group_.ends.rings.empty()) return;
+        space_.for_each(
+            std::ssize(group_.ends.rings),
+            [ring = rings_.data(), ends = view(), of_first, of_last] CATENA_LAMBDA(std::int64_t i) {
+                if (ring[i].first >= 0) ends.first.store(i, of_first.load(ring[i].first));
+                if (ring[i].last >= 0) ends.last.store(i, of_last.load(ring[i].last));
+            });
+        for (std::int64_t i = 0; i < std::ssize(group_.ends.rings); ++i) {
+            LocalRing const& ring = group_.ends.rings[static_cast<std::size_t>(i)];
             if (!ring.is_whole()) exchange(i, ring);
         }
     }

@@ -133,7 +133,7 @@ ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size) {
     BodyArrays& b = chain.bodies;
     move(b.mass), move(b.com), move(b.inertia), move(b.axis), move(b.rotation), move(b.translation),
         move(b.q), move(b.qd);
-    move(b.free_position), move(b.free_velocity);
+    move(b.free_base.position), move(b.free_base.velocity);
     terms::for_each_column([&](auto const& column) {
         if (!column.named) move(b.*column.values);
     });

@@ -66,7 +66,7 @@ bool starts_at_given_velocities(Scene const& scene) {
     return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) {
         return chain.velocities == StartVelocities::given &&
                (any(chain.beads.velocity) || any(chain.bodies.qd) || any(chain.linked.velocity) ||
-                any(chain.linked.omega) || norm(chain.bodies.free_velocity) > 0);
+                any(chain.linked.omega) || norm(chain.bodies.free_base.velocity) > 0);
     });
 }
 

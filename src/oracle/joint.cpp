@@ -115,14 +115,14 @@ void read_joint(ChainSpec const& chain, Loads const& loads, std::size_t k, Link<
                         lift<S>(entry(b.first_axis, k)),
                         S(entry(b.pitch, k)),
                         M3<S>::identity(),
-                        lift<S>(base ? b.free_position : b.translation[k]),
+                        lift<S>(base ? b.free_base.position : b.translation[k]),
                         state.q,
                         b.q[k]};
     if (!base) shape.rotation = orthonormal<S>(b.rotation[k]);
     place(shape, "joint " + std::to_string(k + 1), link);
     Motion<S> const velocity = along(link, state.rates);
     link.rate = velocity.angular;
-    link.slide = base ? lift<S>(b.free_velocity) : velocity.linear;
+    link.slide = base ? lift<S>(b.free_base.velocity) : velocity.linear;
     if (link.type == JointType::universal)
         link.drift =
             S(state.rates[0] * state.rates[1]) * cross(link.free[0].angular, link.free[1].angular);

@@ -136,9 +136,9 @@ Scalar rnea_residual(ChainSpec const& chain, Loads const& loads,
 /// eps.
 double condition_estimate(ChainSpec const& chain, Loads const& loads = {});
 
-/// Makes the velocities (qd, free_velocity; beads and linked bodies: velocity, omega) consistent
-/// with a jointed tip and every link. The change has the least sum of squares, up to rounding.
-/// Joints with prescribed motion keep their rates at `time`.
+/// Makes the velocities (qd, free_base.velocity; beads and linked bodies: velocity, omega)
+/// consistent with a jointed tip and every link. The change has the least sum of squares, up to
+/// rounding. Joints with prescribed motion keep their rates at `time`.
 void project_velocities(ChainSpec& chain, double time = 0);
 
 #define CATENA_ORACLE(Scalar)                                                              \

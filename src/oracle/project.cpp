@@ -59,7 +59,7 @@ void project_bodies(ChainSpec& chain, double time) {
         for (int i = 0; i < 3; ++i) {
             Motion<double> unit;
             unit.linear[i] = 1;
-            add(chain.bodies.free_velocity[i], k, unit);
+            add(chain.bodies.free_base.velocity[i], k, unit);
         }
     }
     if (numbers.empty()) return;

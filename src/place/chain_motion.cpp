@@ -15,7 +15,7 @@ void translate(ChainSpec& chain, Vec3 const& by) {
     } else if (chain.is_linked()) {
         if (fixed) chain.linked.anchor = chain.linked.anchor + by;
     } else {
-        Vec3& place = fixed ? chain.bodies.translation[0] : chain.bodies.free_position;
+        Vec3& place = fixed ? chain.bodies.translation[0] : chain.bodies.free_base.position;
         place = place + by;
     }
 }

@@ -13,9 +13,9 @@
 #include "generate/crosslinks.hpp"
 #include "generate/start_fit.hpp"
 #include "generate/superposition.hpp"
-#include "io/printable.hpp"
 #include "keys/maps.hpp"
 #include "place/chain_motion.hpp"
+#include "place/frame_match.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 
@@ -29,36 +29,10 @@ double constexpr noted_misfit = 0.02, largest_misfit = 0.5;
 /// Relative difference of box edges that is rounding, such as that of single precision.
 double constexpr same_edge = 1e-6;
 
-/// Residue names of the points known to OpenMM.
-std::vector<std::string> const& residues_of(ChainSpec const& chain) {
-    return chain.is_beads() ? chain.beads.residue : chain.carried().residue;
-}
-
 /// Range of the carried beads of a unit.
 std::pair<std::size_t, std::size_t> beads_of(LinkedArrays const& linked, std::size_t unit) {
     return {static_cast<std::size_t>(linked.carried.offset[unit]),
             static_cast<std::size_t>(linked.carried.offset[unit + 1])};
-}
-
-/// True if every body of a chain carries beads and is linked at its first and last one.
-bool is_linked_at_beads(LinkedArrays const& linked) {
-    for (std::size_t u = 0; u < linked.size(); ++u) {
-        auto const [first, end] = beads_of(linked, u);
-        if (first == end) return false;
-        std::vector<Vec3> const& at = linked.carried.position;
-        if (norm(linked.inboard[u] - at[first]) > same_edge ||
-            norm(linked.outboard[u] - at[end - 1]) > same_edge)
-            return false;
-    }
-    return true;
-}
-
-/// True if the lists hold the same cross-links, in any order.
-using CrossLinkEnds = std::vector<std::array<std::int64_t, 2>>;
-bool are_the_same(CrossLinkEnds a, CrossLinkEnds b) {
-    std::sort(a.begin(), a.end());
-    std::sort(b.begin(), b.end());
-    return a == b;
 }
 
 /// Beads of a chain, those of its rigid domains included, and the domains.
@@ -90,6 +64,31 @@ Beads beads_at(ChainSpec const& chain, std::span<Vec3 const> positions) {
     return beads;
 }
 
+/// Shift of a chain that brings its centre into the old box, and that box into the middle of the
+/// new one, along the axes that differ.
+Vec3 shift_into(ChainSpec const& chain, Vec3 const& old, Vec3 const& now,
+                std::array<bool, 3> const& differs) {
+    std::vector<Vec3> const& at = chain.is_beads() ? chain.beads.position : chain.linked.position;
+    Vec3 centre = Vec3::zero(), shift = Vec3::zero();
+    for (Vec3 const& point : at)
+        centre = plus_scaled(centre, 1 / static_cast<double>(at.size()), point);
+    for (int i = 0; i < 3; ++i)
+        if (differs[static_cast<std::size_t>(i)])
+            shift[i] = 0.5 * (now[i] - old[i]) - old[i] * std::floor(centre[i] / old[i]);
+    return shift;
+}
+
+/// Sets the kind of start velocities of a chain, and the velocities to zero.
+void set_velocities(Draft& draft, bool warm) {
+    ChainSpec& chain = draft.chain;
+    Node const* const written = draft.node->find("velocities");
+    bool const zero = written && written->text == "zero";
+    chain.velocities = warm && !zero ? StartVelocities::thermal : StartVelocities::zero;
+    for (std::vector<Vec3>* const velocities :
+         {&chain.beads.velocity, &chain.linked.velocity, &chain.linked.omega})
+        std::fill(velocities->begin(), velocities->end(), Vec3::zero());
+}
+
 /// Puts the chains of a scene where a frame has them.
 class FrameStart {
   public:
@@ -105,7 +104,7 @@ class FrameStart {
     }
 
     void run(bool warm) {
-        compare();
+        refuse_frame_of_others(frame_, drafts_, scene_, start_, *fields_.find("from"));
         place();
         if (scene_.box && frame_.box) change_box();
         bool thermal = false;
@@ -122,101 +121,6 @@ class FrameStart {
     }
 
   private:
-    /// Throws InputError unless the frame has the scene's chains.
-    void compare() {
-        Node const& from = *fields_.find("from");
-        if (frame_.si != scene_.si)
-            fail(from,
-                 fmt::format("`{}` is in {}, the scene is not", frame_.file,
-                             frame_.si ? "SI units" : "nm and ps"),
-                 "give a trajectory in the scene's units");
-        std::size_t sites = 0;
-        for (Draft const& draft : drafts_) {
-            refuse_other_kind(draft);
-            sites += draft.chain.bead_count();
-        }
-        compare_chains(from);
-        if (sites != frame_.position.size())
-            fail(from,
-                 fmt::format("`{}` has {} beads, the scene has {}", frame_.file,
-                             frame_.position.size(), sites),
-                 "give a trajectory of the same chains");
-        compare_residues(from);
-    }
-    void refuse_other_kind(Draft const& draft) const {
-        ChainSpec const& chain = draft.chain;
-        if (chain.is_beads()) return;
-        if (!chain.is_linked())
-            fail(start_,
-                 fmt::format("chain `{}` has joints, and a frame gives positions of beads only",
-                             shown(chain.name)),
-                 "continue that run instead: `catena run --restart CHECKPOINT`");
-        if (!is_linked_at_beads(chain.linked))
-            fail(start_,
-                 fmt::format("bodies of chain `{}` are not linked at beads that they carry",
-                             shown(chain.name)),
-                 "continue that run instead: `catena run --restart CHECKPOINT`");
-        if (chain.tip == Tip::jointed)
-            fail(start_,
-                 fmt::format("chain `{}` has rigid domains and a tip that is not free",
-                             shown(chain.name)),
-                 "continue that run instead: `catena run --restart CHECKPOINT`");
-    }
-    void compare_chains(Node const& from) {
-        if (frame_.chains.empty()) return;
-        if (frame_.chains.size() != drafts_.size())
-            fail(from,
-                 fmt::format("`{}` has {} chains, the scene has {}", frame_.file,
-                             frame_.chains.size(), drafts_.size()),
-                 "give a trajectory of the same chains");
-        for (std::size_t c = 0; c < drafts_.size(); ++c) {
-            Topology::Chain const& other = frame_.chains[c];
-            ChainSpec const& chain = drafts_[c].chain;
-            if (other.count != static_cast<std::int64_t>(chain.bead_count()))
-                fail(from,
-                     fmt::format("chain {}, `{}`, has {} beads in `{}`, the scene's `{}` has {}",
-                                 c + 1, shown(printable(other.name)), other.count, frame_.file,
-                                 shown(chain.name), chain.bead_count()),
-                     "give a trajectory of the same chains in the same order");
-            if (other.parent != chain.parent)
-                fail(from,
-                     fmt::format("chain {}, `{}`, branches otherwise in `{}` than in the scene",
-                                 c + 1, shown(chain.name), frame_.file),
-                     "give a trajectory of the same chains");
-            if (!are_the_same(other.crosslinks, ends_of_crosslinks(chain)))
-                fail(from,
-                     fmt::format("chain {}, `{}`, has other cross-links in `{}` than in the scene",
-                                 c + 1, shown(chain.name), frame_.file),
-                     "give a trajectory of the same chains");
-            if (other.name != chain.name && renamed_++ == 0)
-                first_renamed_ = fmt::format("`{}` for the scene's `{}`",
-                                             shown(printable(other.name)), shown(chain.name));
-        }
-        if (renamed_ > 0)
-            scene_.note(
-                fmt::format("`{}` names {} of {} chains otherwise, the first {}: their "
-                            "order counts",
-                            frame_.file, renamed_, drafts_.size(), first_renamed_));
-    }
-    void compare_residues(Node const& from) const {
-        std::size_t site = 0;
-        for (Draft const& draft : drafts_)
-            for (std::size_t k = 0; k < draft.chain.bead_count(); ++k, ++site) {
-                if (frame_.residue.empty()) continue;
-                std::string other = frame_.residue[site].substr(0, 3);
-                other.erase(std::remove(other.begin(), other.end(), ' '), other.end());
-                // A topology file holds three characters of a name.
-                std::string own = residues_of(draft.chain)[k].substr(0, 3);
-                own.erase(std::remove(own.begin(), own.end(), ' '), own.end());
-                if (other == own || other == "UNK" || own == "UNK") continue;
-                fail(
-                    from,
-                    fmt::format("bead {} of chain `{}` is {} in the scene and {} in `{}`", k + 1,
-                                shown(draft.chain.name), own, shown(printable(other)), frame_.file),
-                    "give a trajectory of the same chains in the same order");
-            }
-    }
-
     /// Places all chains, whole and with links of their lengths.
     void place() {
         bool const system = scene_.forces.openmm && !scene_.forces.openmm->system.empty();
@@ -329,37 +233,11 @@ class FrameStart {
                   "the middle of the scene's"
                 : "chains stay where the frame has them, because some are attached to the ground"));
     }
-    static Vec3 shift_into(ChainSpec const& chain, Vec3 const& old, Vec3 const& now,
-                           std::array<bool, 3> const& differs) {
-        std::vector<Vec3> const& at =
-            chain.is_beads() ? chain.beads.position : chain.linked.position;
-        Vec3 centre = Vec3::zero(), shift = Vec3::zero();
-        for (Vec3 const& point : at)
-            centre = plus_scaled(centre, 1 / static_cast<double>(at.size()), point);
-        for (int i = 0; i < 3; ++i)
-            if (differs[static_cast<std::size_t>(i)])
-                shift[i] = 0.5 * (now[i] - old[i]) - old[i] * std::floor(centre[i] / old[i]);
-        return shift;
-    }
-
-    static void set_velocities(Draft& draft, bool warm) {
-        ChainSpec& chain = draft.chain;
-        Node const* const written = draft.node->find("velocities");
-        bool const zero = written && written->text == "zero";
-        chain.velocities = warm && !zero ? StartVelocities::thermal : StartVelocities::zero;
-        for (std::vector<Vec3>* const velocities :
-             {&chain.beads.velocity, &chain.linked.velocity, &chain.linked.omega})
-            std::fill(velocities->begin(), velocities->end(), Vec3::zero());
-    }
-
     std::vector<Draft>& drafts_;
     Scene& scene_;
     Node const& start_;
     Fields fields_;
     ChosenFrame frame_;
-    /// Number of chains with other names, and the first of them.
-    std::size_t renamed_ = 0;
-    std::string first_renamed_;
     /// Largest distance of a domain's bead from the frame's position, nm, and its domain.
     double misfit_ = 0;
     std::string misfit_at_;

@@ -8,7 +8,7 @@
 
 #include "dca/host_space.hpp"
 #include "dynamics/bead_chains.hpp"
-#include "dynamics/bead_dynamics.hpp"
+#include "dynamics/bead_store.hpp"
 #include "error.hpp"
 #include "mpi/communicator.hpp"
 
@@ -55,9 +55,9 @@ class LinksOf final : public GroupLinks {
           momentum_(group.size),
           change_(group.size),
           direction_(group.link_entries()),
-          tip_direction_(group.has_tips() ? group.size : 0),
+          tip_direction_(group.ends.has_tips() ? group.size : 0),
           bias_(group.link_entries() + 1, group.directions),
-          tip_bias_(group.has_tips() ? group.size : 0, group.directions),
+          tip_bias_(group.ends.has_tips() ? group.size : 0, group.directions),
           ring_ends_(group, space, communicator) {
         for (std::int64_t k = 0; k < group.size; ++k)
             particle_.push_back(
@@ -81,7 +81,7 @@ class LinksOf final : public GroupLinks {
     void project(std::span<Vec3 const> positions, std::span<Vec3> velocities) override {
         look_at(positions);
         space_.for_each(group_.size, [&](std::int64_t k) {
-            momentum_.view().store(k, group_.mass.view().at(k, 0) * velocities[particle(k)]);
+            momentum_.view().store(k, group_.bodies.mass.view().at(k, 0) * velocities[particle(k)]);
         });
         solver_->solve({{}, momentum_.view(), {}, {}, {}}, {{}, change_.view(), {}, {}});
         double const size = space_.largest(
@@ -128,10 +128,13 @@ class LinksOf final : public GroupLinks {
         space_.for_each(group_.size, [c](std::int64_t k) { c.set_direction(k); });
         space_.for_each(std::ssize(tip_), [c](std::int64_t i) { c.set_tip_direction(i); });
         space_.for_each(
-            std::ssize(group_.crosslinks),
+            std::ssize(group_.branching.crosslinks),
             [c, first = group_.first_crosslink()](std::int64_t i) { c.set_direction(first + i); });
-        solver_->assemble_matrices(
-            {direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}});
+        solver_->assemble_matrices({direction_.view(),
+                                    {},
+                                    group_.ends.has_tips() ? tip_direction_.view() : View<3>{},
+                                    {},
+                                    {}});
     }
     /// Sets the biases to the length errors at position_. Returns the largest relative one, NaN if
     /// a position is.
@@ -143,7 +146,7 @@ class LinksOf final : public GroupLinks {
             return off == 0 ? 0 : std::fabs(off) / c.length.at(k, 0);
         };
         double const along = space_.largest(group_.size, at_link);
-        double const across = space_.largest(std::ssize(group_.crosslinks),
+        double const across = space_.largest(std::ssize(group_.branching.crosslinks),
                                              [at_link, first = group_.first_crosslink()](
                                                  std::int64_t i) { return at_link(first + i); });
         double const at_tips = space_.largest(std::ssize(tip_), [c](std::int64_t i) -> double {
@@ -225,15 +228,15 @@ class LinksOf final : public GroupLinks {
     Chains chains() {
         Chains c;
         if constexpr (std::is_same_v<Fields, BranchedFields>) {
-            c.places.inboard_bead = group_.inboard.data();
-            c.places.crosslink = group_.crosslinks.data();
+            c.places.inboard_bead = group_.branching.inboard.data();
+            c.places.crosslink = group_.branching.crosslinks.data();
         }
         c.places.size = group_.size;
-        c.places.is_first = group_.is_first.data();
+        c.places.is_first = group_.ends.is_first.data();
         c.places.has_link = links_.data();
         c.places.piece = piece_.data();
         c.places.pieces = std::ssize(piece_);
-        c.length = group_.length.view();
+        c.length = group_.joints.length.view();
         c.tip = tip_.data();
         c.position = position_.view();
         c.direction = direction_.view();

@@ -242,6 +242,86 @@ std::vector<bool> cross_link(ChainSpec& chain, ChainRequest const& request, Node
     return open;
 }
 
+/// What a source of bodies tells of them: true if it has their velocities, and its first planar
+/// joint, or nullptr.
+struct FromSource {
+    bool velocities = true;
+    Node const* planar = nullptr;
+};
+
+/// Makes the beads of a sequence or of a structure's chain. Rigid domains become bodies; the other
+/// beads stay points.
+void residues_of_sequence(ChainRequest& request, std::int64_t copy, ChainSpec& chain) {
+    chain.beads = read_sequence(request, copy);
+    if (request.part != nullptr) chain.members = request.part->names;
+    if (request.rigid.empty()) return;
+    chain.linked = with_domains(chain.beads, request.rigid, *request.fields.find("rigid"));
+    chain.beads = {};
+}
+
+/// Reads the bodies that the entry lists, or those of the file that it names.
+FromSource written_bodies(ChainRequest& request, Node const& source, ChainSpec& chain) {
+    if (source.kind == Node::Kind::map) {
+        request.allow("rigid bodies", {});
+        Node const& file = Fields(source, keys::hdf5).need("hdf5", "hdf5: chain.h5");
+        ChainSpec made = read_hdf5_bodies(resolved(text(file), request.scene.file), request.base);
+        chain.bodies = std::move(made.bodies);
+        chain.term_numbers = std::move(made.term_numbers);
+        return {};
+    }
+    BodyList const kind = kind_of_list(source);
+    if (kind == BodyList::beads) return {explicit_beads(request, source, chain)};
+    if (kind == BodyList::linked) {
+        request.allow("bodies on links", {"anchor"});
+        ExplicitLinked made =
+            read_linked(source, request.base, request.anchor(), request.scene.box);
+        note_cut_links(request, made);
+        chain.linked = std::move(made.linked);
+        return {made.velocities};
+    }
+    request.allow("rigid bodies", {});
+    ExplicitBodies made = read_bodies(source, request.base);
+    chain.bodies = std::move(made.bodies);
+    return {true, made.planar};
+}
+
+/// Number of the System's particle that follows those of the drafts.
+std::int64_t next_particle(std::vector<Draft> const& drafts) {
+    return drafts.empty() ? 0
+                          : drafts.back().particle +
+                                static_cast<std::int64_t>(drafts.back().chain.bead_count());
+}
+
+/// Throws InputError unless the number of copies can follow from the concentration `at`.
+void check_concentration(Node const& at, ChainRequest const& request) {
+    read_concentration(at);
+    if (request.fields.find("count"))
+        fail(at, "the chain has both `count` and `concentration`", "keep one of them");
+    if (request.scene.si) fail(at, "a concentration in SI units", "write `units: md`, or `count`");
+    if (request.system)
+        fail(at, "a concentration beside a System, which has a number of chains of its own",
+             "give `count`");
+    if (!request.scene.box)
+        fail(at, "a concentration without a periodic box whose edges are given",
+             "add `box: {periodic: [30, 30, 30]}`, or give `count`");
+}
+
+/// Tells the forces the charged ends of a chain that differ from those of the whole scene. They are
+/// known as soon as the first copy is made.
+void say_ends(ChainRequest const& request, std::string const& name) {
+    OpenMmSpec* const openmm =
+        request.scene.forces.openmm ? &*request.scene.forces.openmm : nullptr;
+    bool const differ = request.fields.find("charge_termini") || request.is_cut() ||
+                        request.protein_ends != calvados2::ChargedTermini{};
+    if (!openmm || openmm->builder.empty()) return;
+    bool const complex = request.part != nullptr && !request.part->members.empty();
+    if (differ || complex)
+        openmm->map.push_back({name, as_numbers(complex ? calvados2::ChargedTermini{false, false}
+                                                        : request.termini())});
+    for (calvados2::InnerTerminus const& end : request.inner_termini())
+        openmm->map.push_back({name, as_map_entry(end)});
+}
+
 /// Reads one entry and makes its copies.
 class ChainReader {
   public:
@@ -256,7 +336,7 @@ class ChainReader {
         tip_ = read_tip(request_.fields);
         if (Node const* const count = request_.fields.find("count")) count_ = whole(*count, 1);
         concentration_ = request_.fields.find("concentration");
-        if (concentration_) check_concentration();
+        if (concentration_) check_concentration(*concentration_, request_);
         if (source_.key == "generator") generator_.emplace(request_, source_);
     }
 
@@ -282,13 +362,6 @@ class ChainReader {
     }
 
   private:
-    /// Number of the System's particle that follows those of the drafts.
-    static std::int64_t next_particle(std::vector<Draft> const& drafts) {
-        return drafts.empty() ? 0
-                              : drafts.back().particle +
-                                    static_cast<std::int64_t>(drafts.back().chain.bead_count());
-    }
-
     /// Makes all copies and appends them. Copies that do not differ are copied from the first, not
     /// read again.
     void append_copies(std::string const& name, std::vector<Draft>& drafts) {
@@ -305,7 +378,7 @@ class ChainReader {
         prepare(count_ == 1 ? name : name + "-1", next);
         std::int64_t const first_particle = request_.particle;
         ChainSpec first = make(0);
-        say_ends(count_ == 1 ? name : name + "-1");
+        say_ends(request_, count_ == 1 ? name : name + "-1");
         auto const beads = static_cast<std::int64_t>(first.bead_count());
         double const bytes =
             with_copies(before, static_cast<std::int64_t>(first.size()), first.is_beads());
@@ -322,7 +395,7 @@ class ChainReader {
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
-            say_ends(copy_name);
+            say_ends(request_, copy_name);
             bool const differs =
                 is_random() ||
                 (request_.system && !request_.system->alike(first_particle, request_.particle,
@@ -336,21 +409,6 @@ class ChainReader {
         drafts.back().bytes = bytes;
     }
 
-    /// Throws InputError unless the number of copies can follow from a concentration.
-    void check_concentration() const {
-        Node const& at = *concentration_;
-        read_concentration(at);
-        if (request_.fields.find("count"))
-            fail(at, "the chain has both `count` and `concentration`", "keep one of them");
-        if (request_.scene.si)
-            fail(at, "a concentration in SI units", "write `units: md`, or `count`");
-        if (request_.system)
-            fail(at, "a concentration beside a System, which has a number of chains of its own",
-                 "give `count`");
-        if (!request_.scene.box)
-            fail(at, "a concentration without a periodic box whose edges are given",
-                 "add `box: {periodic: [30, 30, 30]}`, or give `count`");
-    }
     /// The System's first particle of the chain of that name; `next` without a System.
     std::int64_t particle_of(std::string const& name, std::int64_t next) const {
         return request_.system ? request_.system->first_particle(name, next) : next;
@@ -359,67 +417,13 @@ class ChainReader {
     void prepare(std::string const& name, std::int64_t next) {
         request_.particle = particle_of(name, next);
     }
-    /// Tells the forces the charged ends of a chain that differ from those of the whole scene. They
-    /// are known as soon as the first copy is made.
-    void say_ends(std::string const& name) {
-        OpenMmSpec* const openmm =
-            request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
-        bool const differ = request_.fields.find("charge_termini") || request_.is_cut() ||
-                            request_.protein_ends != calvados2::ChargedTermini{};
-        if (!openmm || openmm->builder.empty()) return;
-        bool const complex = request_.part != nullptr && !request_.part->members.empty();
-        if (differ || complex)
-            openmm->map.push_back(
-                {name, as_numbers(complex ? calvados2::ChargedTermini{false, false}
-                                          : request_.termini())});
-        for (calvados2::InnerTerminus const& end : request_.inner_termini())
-            openmm->map.push_back({name, as_map_entry(end)});
-    }
 
     /// Makes one copy with its tip and the kind of its start velocities.
     ChainSpec make(std::int64_t copy) {
         ChainSpec chain;
         chain.base = request_.base;
-        Node const* planar = tip_.planar;
-        bool velocities = true;
-        if (generator_) {
-            generator_->make(chain, copy);
-            velocities = generator_->gives_velocities();
-        } else if (source_.key != "bodies" && source_.key != "pdb" && is_rna(request_)) {
-            read_nucleotides(request_, copy, chain);
-            velocities = false;
-        } else if (source_.key != "bodies") {
-            chain.beads = read_sequence(request_, copy);
-            if (request_.part != nullptr) chain.members = request_.part->names;
-            velocities = false;
-            // Rigid domains become bodies; the other beads stay points.
-            if (!request_.rigid.empty()) {
-                chain.linked =
-                    with_domains(chain.beads, request_.rigid, *request_.fields.find("rigid"));
-                chain.beads = {};
-            }
-        } else if (source_.kind == Node::Kind::map) {
-            request_.allow("rigid bodies", {});
-            Node const& file = Fields(source_, keys::hdf5).need("hdf5", "hdf5: chain.h5");
-            ChainSpec made =
-                read_hdf5_bodies(resolved(text(file), request_.scene.file), request_.base);
-            chain.bodies = std::move(made.bodies);
-            chain.term_numbers = std::move(made.term_numbers);
-        } else if (BodyList const kind = kind_of_list(source_); kind == BodyList::beads) {
-            velocities = explicit_beads(request_, source_, chain);
-        } else if (kind == BodyList::linked) {
-            request_.allow("bodies on links", {"anchor"});
-            ExplicitLinked made =
-                read_linked(source_, request_.base, request_.anchor(), request_.scene.box);
-            note_cut_links(request_, made);
-            chain.linked = std::move(made.linked);
-            velocities = made.velocities;
-        } else {
-            request_.allow("rigid bodies", {});
-            ExplicitBodies made = read_bodies(source_, request_.base);
-            chain.bodies = std::move(made.bodies);
-            if (made.planar) planar = made.planar;
-        }
+        auto [velocities, planar] = read_source(copy, chain);
+        if (planar == nullptr) planar = tip_.planar;
         if (source_.key == "bodies" && source_.kind == Node::Kind::list)
             terms::read_bodies(source_, request_.scene.forces, chain);
         // No bead of a branched chain is known to be the end of a protein.
@@ -432,6 +436,19 @@ class ChainReader {
         set_velocities(chain, velocities);
         note_lost_rates(chain, request_);
         return chain;
+    }
+    /// Reads or generates the bodies of one copy.
+    FromSource read_source(std::int64_t copy, ChainSpec& chain) {
+        if (generator_) {
+            generator_->make(chain, copy);
+            return {generator_->gives_velocities()};
+        }
+        if (source_.key == "bodies") return written_bodies(request_, source_, chain);
+        if (source_.key != "pdb" && is_rna(request_))
+            read_nucleotides(request_, copy, chain);
+        else
+            residues_of_sequence(request_, copy, chain);
+        return {false};
     }
 
     /// Sets the kind of start velocities and clears the given ones if they are not used. `given` is
@@ -447,7 +464,7 @@ class ChainReader {
         if (chain.velocities == StartVelocities::given) return;
         std::fill(chain.beads.velocity.begin(), chain.beads.velocity.end(), Vec3::zero());
         std::fill(chain.bodies.qd.begin(), chain.bodies.qd.end(), Vec3::zero());
-        chain.bodies.free_velocity = Vec3::zero();
+        chain.bodies.free_base.velocity = Vec3::zero();
         std::fill(chain.linked.velocity.begin(), chain.linked.velocity.end(), Vec3::zero());
         std::fill(chain.linked.omega.begin(), chain.linked.omega.end(), Vec3::zero());
     }

@@ -31,9 +31,8 @@ double constexpr celsius_zero = 273.15;
 /// Relative difference below which temperatures count as equal.
 double constexpr same_temperature = 1e-9;
 
-/// Shortest and longest plausible step of residues with friction, and longest one that was shown to
-/// sample them correctly (`catena bench sampling`), ps.
-double constexpr shortest_usual_step = 0.001, longest_usual_step = 0.2, longest_shown_step = 0.06;
+/// Shortest and longest plausible step of residues with friction, ps.
+double constexpr shortest_usual_step = 0.001, longest_usual_step = 0.2;
 /// Mass of the lightest residue in amu and length of a link in nm for which that step was shown.
 double constexpr shown_mass = 57.05, shown_link = 0.38;
 /// Relative difference of masses and lengths that leaves the step as it is.
@@ -133,7 +132,7 @@ void note_forces(Scene& scene) {
 namespace {
 
 /// Sentence on a step of chains like those whose steps were shown; empty if it needs none.
-std::string step_of_residues(double step) {
+std::string step_of_residues(double step, ShownStep const& shown) {
     if (step > longest_usual_step)
         return fmt::format(
             "dynamics.step is {:.6g} ps, that is {:.6g} fs: steps of such chains are "
@@ -141,24 +140,29 @@ std::string step_of_residues(double step) {
             step, 1000 * step,
             step / 1000 < shortest_usual_step ? ""
                                               : fmt::format(" Did you mean {:.6g}?", step / 1000));
-    if (step <= longest_shown_step) return "";
+    if (step <= shown.longest) return "";
     return fmt::format(
-        "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to sample chains of beads "
-        "correctly, longer ones were not.",
-        1000 * step, 1000 * longest_shown_step);
+        "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to sample {} correctly, "
+        "longer ones were not.",
+        1000 * step, 1000 * shown.longest, shown.chains);
 }
 
 /// The same for a System's beads of other masses and distances.
-std::string step_of_others(double step, FastestBead const& fastest) {
-    double const shown = longest_shown_step * fastest.scale;
+std::string step_of_others(double step, ShownStep const& of_residues, FastestBead const& fastest) {
+    double const shown = of_residues.longest * fastest.scale;
     if (step <= shown) return "";
     return fmt::format(
         "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown for residues, which are "
         "{:.2g} fs for the System's beads of {:.4g} amu on links of {:.4g} nm.",
-        1000 * step, 1000 * longest_shown_step, 1000 * shown, fastest.mass, fastest.length);
+        1000 * step, 1000 * of_residues.longest, 1000 * shown, fastest.mass, fastest.length);
 }
 
 }  // namespace
+
+ShownStep shown_step(Scene const& scene) {
+    return scene.box && scene.chains.size() > 1 ? ShownStep{0.04, "condensates and slabs"}
+                                                : ShownStep{0.06, "chains of beads"};
+}
 
 void note_step(Scene& scene) {
     DynamicsSpec const& run = scene.dynamics;
@@ -167,7 +171,9 @@ void note_step(Scene& scene) {
     bool const alike = !scene.forces.openmm->builder.empty() || std::isinf(fastest.scale) ||
                        std::abs(fastest.scale - 1) < similar ||
                        (fastest.scale > 1 && has_amino_acids(scene));
-    std::string const note = alike ? step_of_residues(run.step) : step_of_others(run.step, fastest);
+    ShownStep const shown = shown_step(scene);
+    std::string const note =
+        alike ? step_of_residues(run.step, shown) : step_of_others(run.step, shown, fastest);
     if (!note.empty()) scene.note(note);
 }
 

@@ -17,6 +17,15 @@ void note_water(Scene&);
 /// strength or pH. Water outside the range of measured permittivity is noted, too.
 /// Precondition: all sections except the chains have been read.
 void note_forces(Scene&);
+/// Longest step that `catena bench sampling` showed to sample chains of residues, and which chains.
+struct ShownStep {
+    double longest;  // ps
+    char const* chains;
+};
+/// Returns the step shown for chains as dense as the scene's. At 60 fs a slab of glycine-rich
+/// chains failed within a nanosecond.
+ShownStep shown_step(Scene const&);
+
 /// Notes a step that is implausible, or beyond those that were shown to sample chains correctly. A
 /// System's beads are judged by their masses and the lengths of their links. Precondition: the
 /// chains have been read.

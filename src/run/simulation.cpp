@@ -22,9 +22,69 @@
 namespace catena {
 namespace {
 
-/// Steps whose timeline is kept: the first few and then those that write output, up to a limit.
-constexpr std::int64_t first_timelines = 5;
-constexpr std::size_t most_timelines = 50;
+/// Timelines of the first few steps and then of those that write output, up to a limit.
+class KeptTimelines {
+  public:
+    static constexpr std::int64_t first_steps = 5;
+    /// Returns the timeline to be filled for step n; null if it is not `wanted` or beyond the
+    /// limit.
+    StepTimeline* of_step(std::int64_t n, bool wanted) {
+        if (!wanted || timelines_.size() >= most) return nullptr;
+        timelines_.reserve(most);
+        timelines_.push_back({n, {}});
+        return &timelines_.back();
+    }
+    std::vector<StepTimeline> const& all() const { return timelines_; }
+
+  private:
+    static constexpr std::size_t most = 50;
+    std::vector<StepTimeline> timelines_;
+};
+
+/// Requests of this rank to save or to stop, on which ranks agree (StopAgreement).
+class Requests {
+  public:
+    /// Value of a request to save; one to stop has the reason to stop added.
+    static constexpr int save = 1;
+    /// `stop`: see RunOptions. `minutes`: time between checkpoints, 0 if this rank asks for none.
+    Requests(StopAgreement::Wish const& stop, double minutes) : stop_(stop), minutes_(minutes) {}
+    /// Returns the request to stop, else that to save because of the time, else 0.
+    int now() const {
+        if (int const stop = stop_ ? stop_() : 0; stop != 0) return save + stop;
+        return minutes_ > 0 && seconds_now() - saved_at_ >= 60 * minutes_ ? save : 0;
+    }
+    /// Begins to count the time until the next checkpoint.
+    void note_checkpoint() { saved_at_ = seconds_now(); }
+
+  private:
+    StopAgreement::Wish const& stop_;
+    double minutes_, saved_at_ = 0;
+};
+
+/// Adds a warning if several ranks use one GPU. Collective.
+void warn_of_shared_gpus(ChainSystem const& system, Communicator const& communicator,
+                         std::vector<std::string>& notes) {
+    if (!uses_gpu(system.backend()) || communicator.size() == 1) return;
+    int const ranks = cuda::most_ranks_of_a_gpu(communicator);
+    if (ranks > 1)
+        notes.push_back("warning: " + std::to_string(ranks) +
+                        " ranks share a GPU, where each waits for the others: start one rank per "
+                        "GPU");
+}
+
+/// Adds notes about output options without effect. `without_bodies`: no chain has rigid bodies.
+void note_outputs(OutputSpec const& output, RunOrigin const& origin, bool without_bodies,
+                  std::vector<std::string>& notes) {
+    std::int64_t const every = output.every, first = origin.first_step(), last = origin.last_step();
+    if (last > first && every > last - first && (last - 1) / every == first / every)
+        notes.push_back("output.every = " + std::to_string(every) + " exceeds the " +
+                        std::to_string(last - first) +
+                        " steps of this run: no frame lies between its first and last states");
+    if (output.coordinates && without_bodies)
+        notes.push_back(
+            "output.coordinates: no chain has rigid bodies, so there are no coordinates to write");
+}
+
 /// State of one run on one rank.
 class Run {
   public:
@@ -47,19 +107,20 @@ class Run {
                   root_ ? sites_of_scene_.get() : Sites()) {
         record_.notes = scene_.notes;
         record_.start = {scene_.start, std::nullopt, std::move(relaxation)};
-        warn_of_shared_gpus();
+        warn_of_shared_gpus(system_, communicator_, record_.notes);
     }
 
     /// Runs all steps and returns the summary. Collective.
     nlohmann::ordered_json run() {
         origin_.restore(parts());
         std::int64_t const first = origin_.first_step(), last = origin_.last_step();
-        note_outputs();
+        note_outputs(scene_.output, origin_, root_ && frames_.topology().bodies.empty(),
+                     record_.notes);
         Progress progress(options_.quiet || !root_, first, last, scene_.dynamics.step, scene_.si);
         double const start = seconds_now();
         std::int64_t const rounds = communicator_.rounds();
-        StopAgreement agreement(communicator_, [this] { return wish(); }, first);
-        saved_at_ = seconds_now();
+        StopAgreement agreement(communicator_, [this] { return requests_.now(); }, first);
+        requests_.note_checkpoint();
         std::int64_t n = first;
         while (!ends_at(n, agreement)) {
             progress.update(++n);
@@ -82,7 +143,8 @@ class Run {
         bool const saves = scene_.output.checkpoint_every > 0 &&
                            n % scene_.output.checkpoint_every == 0 && n > first;
         bool const looks = writes || saves || is_checked(n);
-        StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
+        StepTimeline* const timeline =
+            timelines_.of_step(n, n - first < KeptTimelines::first_steps || writes);
         bool const renews = (saves || n == last) && system_.openmm();
         if (renews) system_.openmm()->renew_ghosts();  // same ghosts as after a restart from here
         Traffic const before = messages_.so_far();
@@ -90,8 +152,8 @@ class Run {
         Traffic of_step = messages_.so_far() - before;
         if (n == first) open();  // forces exist before anything is written or replaced
         int const agreed = n == last ? 0 : agreement.reason_at(n);
-        bool const saves_by_time = agreed == save_wish;
-        record_.stopped_by = std::max(0, agreed - save_wish);
+        bool const saves_by_time = agreed == Requests::save;
+        record_.stopped_by = std::max(0, agreed - Requests::save);
         bool const ends = n == last || record_.stopped_by != 0;
         // A state is checked before it is saved: steps that left joints open cannot be repeated
         // after a restart.
@@ -145,48 +207,6 @@ class Run {
     }
 
     RunOrigin::Parts parts() { return {system_, *stepper_, verdict_, watch_, record_.notes}; }
-
-    /// Adds a warning if several ranks use one GPU. Collective.
-    void warn_of_shared_gpus() {
-        if (!uses_gpu(system_.backend()) || communicator_.size() == 1) return;
-        int const ranks = cuda::most_ranks_of_a_gpu(communicator_);
-        if (ranks > 1)
-            record_.notes.push_back(
-                "warning: " + std::to_string(ranks) +
-                " ranks share a GPU, where each waits for the others: start one rank per GPU");
-    }
-    /// Adds notes about output options without effect.
-    void note_outputs() {
-        std::int64_t const every = scene_.output.every, first = origin_.first_step(),
-                           last = origin_.last_step();
-        if (last > first && every > last - first && (last - 1) / every == first / every)
-            record_.notes.push_back(
-                "output.every = " + std::to_string(every) + " exceeds the " +
-                std::to_string(last - first) +
-                " steps of this run: no frame lies between its first and last states");
-        if (scene_.output.coordinates && root_ && frames_.topology().bodies.empty())
-            record_.notes.push_back(
-                "output.coordinates: no chain has rigid bodies, so there are no coordinates to "
-                "write");
-    }
-
-    /// Values on which ranks agree at a step: save, or save_wish + signal to stop.
-    static constexpr int save_wish = 1;
-    /// Request of this rank: stop, save because of checkpoint_minutes, or 0.
-    int wish() const {
-        if (int const stop = options_.stop ? options_.stop() : 0; stop != 0)
-            return save_wish + stop;
-        double const minutes = scene_.output.checkpoint_minutes;
-        return root_ && minutes > 0 && seconds_now() - saved_at_ >= 60 * minutes ? save_wish : 0;
-    }
-
-    /// Timeline to be filled for step n, or null.
-    StepTimeline* new_timeline(std::int64_t n, bool wanted) {
-        if (!wanted || timelines_.size() >= most_timelines) return nullptr;
-        timelines_.reserve(most_timelines);
-        timelines_.push_back({n, {}});
-        return &timelines_.back();
-    }
 
     /// Opens the output at the first step, after its forces have been computed. Collective.
     void open() {
@@ -256,7 +276,7 @@ class Run {
         OwnState own = CheckpointParts(system_).own_state();
         stepper_->save(own);
         frames_.folder().write_checkpoint(c, system_, own);
-        saved_at_ = seconds_now();
+        requests_.note_checkpoint();
     }
 
     /// Judges the run, writes the final files and returns the summary. Collective.
@@ -271,7 +291,7 @@ class Run {
             summary_of_run({scene_, communicator_, options_, origin_, system_, *stepper_, frames_,
                             verdict_, shares_, messages_, record_},
                            valid, found);
-        nlohmann::json const timeline = gather_timelines(communicator_, timelines_);
+        nlohmann::json const timeline = gather_timelines(communicator_, timelines_.all());
         auto const replace = nlohmann::ordered_json::error_handler_t::replace;
         frames_.folder().finish(summary.dump(2, ' ', false, replace) + "\n",
                                 timeline.dump() + "\n");
@@ -292,13 +312,14 @@ class Run {
     ChainSystem system_;
     std::unique_ptr<Stepper> stepper_;
     MessageCount messages_;
-    std::vector<StepTimeline> timelines_;
+    KeptTimelines timelines_;
     SweepWatch watch_;
     RunVerdict verdict_{scene_};
     RunRecord record_;
     Pace pace_;
-    double saved_at_ = 0;  // clock at the last checkpoint
-    FrameWriter frames_;   // last member: a concurrent write ends before what it uses
+    /// Only rank 0 asks for checkpoints.
+    Requests requests_{options_.stop, root_ ? scene_.output.checkpoint_minutes : 0.0};
+    FrameWriter frames_;  // last member: a concurrent write ends before what it uses
 };
 
 }  // namespace

@@ -78,10 +78,10 @@ bool solves_at_once(ChainGroup const& group) {
 }  // namespace
 
 Cut cut_of(ChainGroup const& group, GatherWay const& way) {
-    auto const shown = std::count_if(group.rings.begin(), group.rings.end(),
+    auto const shown = std::count_if(group.ends.rings.begin(), group.ends.rings.end(),
                                      [](LocalRing const& ring) { return !ring.is_whole(); });
-    return {std::ssize(group.schedule.shared), group.neighbour_inboard >= 0,
-            group.neighbour_outboard >= 0, shown, way};
+    return {std::ssize(group.schedule.shared), group.neighbours.inboard >= 0,
+            group.neighbours.outboard >= 0, shown, way};
 }
 
 StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
@@ -91,10 +91,10 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
       articulated_(group.handles == Handles::articulated),
       absolute_(group.beads || group.linked || group.axes == Axes::world),
       beads_(group.beads),
-      implicit_(!group.implicit_joint.empty()),
+      implicit_(!group.joints.implicit.empty()),
       linked_(group.linked),
-      moving_meeting_(group.moving_meeting()),
-      tips_(group.has_tips()),
+      moving_meeting_(group.joints.moving_meeting()),
+      tips_(group.ends.has_tips()),
       fixman_(scene.dynamics.fixman),
       at_once_(!keeps_matrices(scene) && solves_at_once(group)),
       refinements_(scene.solver.refine) {

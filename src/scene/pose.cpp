@@ -21,7 +21,7 @@ Pose next_pose(BodyArrays const& bodies, std::size_t k, Pose const& inboard) {
     double const pitch = bodies.pitch.empty() ? 0 : bodies.pitch[k];
     Pose const motion =
         joint_motion(bodies.joint[k], bodies.axis[k], first_axis, pitch, bodies.q[k]);
-    if (floats(bodies.joint[k])) return {normalized(motion.orientation), bodies.free_position};
+    if (floats(bodies.joint[k])) return {normalized(motion.orientation), bodies.free_base.position};
     Pose const frame{to_quaternion(bodies.rotation[k]), bodies.translation[k]};
     return (k == 0 ? Pose{} : inboard) * frame * motion;
 }

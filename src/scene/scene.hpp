@@ -55,6 +55,12 @@ struct CarriedBeads {
     std::size_t size() const { return position.size(); }
 };
 
+/// Start of the origin of a body that moves freely, W.
+struct FreeBase {
+    Vec3 position = Vec3::zero();
+    Vec3 velocity = Vec3::zero();
+};
+
 /// Rigid bodies of one chain in joint coordinates. Entry k describes body k + 1 and its inboard
 /// joint. A body's origin is its inboard joint; for joints that translate it is the point at the
 /// joint frame's origin at q = 0. X(q), the joint's own motion, relates B to J. Revolute:
@@ -83,10 +89,8 @@ struct BodyArrays {
     std::vector<std::array<double, 4>> q;
     /// Joint rates. Spherical and free: angular velocity relative to the inboard body, B.
     std::vector<Vec3> qd;
-    /// Position of body 1's origin for a free base, W.
-    Vec3 free_position = Vec3::zero();
-    /// Velocity of body 1's origin for a free base, W.
-    Vec3 free_velocity = Vec3::zero();
+    /// Body 1 of a free base; ignored for a fixed one.
+    FreeBase free_base;
     /// First axis of a universal joint, J; not parallel to `axis`. Planar3: direction of q[0], J,
     /// perpendicular to the normal `axis`.
     std::vector<Vec3> first_axis;

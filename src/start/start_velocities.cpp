@@ -70,7 +70,7 @@ void set_velocities(ChainSpec& chain, Drawn const& drawn, std::size_t first) {
                                                                drawn.omega_of(first + k - 1));
     }
     if (bodies.size() > 0 && chain.base == Base::free)
-        bodies.free_velocity =
+        bodies.free_base.velocity =
             drawn.velocity_of(first) -
             drawn.rotation_of(first) * cross(drawn.omega_of(first), bodies.com[0]);
 }

@@ -70,7 +70,7 @@ void add_chain(Fingerprint& print, ChainSpec const& chain) {
                    beads.anchor);
     BodyArrays const& b = chain.bodies;
     print.add_each(b.mass, b.com, b.inertia, b.joint, b.axis, b.rotation, b.translation, b.q, b.qd,
-                   b.free_position, b.free_velocity);
+                   b.free_base.position, b.free_base.velocity);
     terms::for_each_column([&](auto const& column) {
         if (!column.named) print.add(b.*column.values);
     });
@@ -141,13 +141,13 @@ void add_loads(Fingerprint& print, ChainSpec const& chain) {
 }
 
 void add_positions(Fingerprint& print, ChainSpec const& chain) {
-    print.add_each(chain.beads.position, chain.bodies.q, chain.bodies.free_position,
+    print.add_each(chain.beads.position, chain.bodies.q, chain.bodies.free_base.position,
                    chain.linked.position, chain.linked.orientation);
 }
 
 void add_velocities(Fingerprint& print, ChainSpec const& chain) {
     print.add_each(chain.velocities, chain.beads.velocity, chain.bodies.qd,
-                   chain.bodies.free_velocity, chain.linked.velocity, chain.linked.omega);
+                   chain.bodies.free_base.velocity, chain.linked.velocity, chain.linked.omega);
 }
 
 }  // namespace

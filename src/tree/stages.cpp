@@ -6,6 +6,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "tree/segments.hpp"
+
 namespace catena::dca {
 namespace {
 
@@ -24,57 +26,42 @@ int levels_above(std::int64_t items) {
     return std::bit_width(static_cast<std::uint64_t>(items)) - 1;
 }
 
+/// Returns the slots of the runs.
+std::vector<std::int64_t> slots_of(std::vector<Run> const& runs) {
+    std::vector<std::int64_t> slots;
+    for (Run const& run : runs) slots.push_back(run.slot);
+    return slots;
+}
+
+/// Sorts the merges by block, then by level.
+void sort_by_block(Stage& s) {
+    std::vector<StageMerge> sorted;
+    sorted.reserve(s.merges.size());
+    for (Range& range : s.merge) {
+        auto const begin = std::ssize(sorted);
+        sorted.insert(sorted.end(), s.merges.begin() + range.begin, s.merges.begin() + range.end);
+        range = {begin, std::ssize(sorted)};
+    }
+    s.merges = std::move(sorted);
+}
+
 /// Builds stages from the runs, merges and roots of a schedule.
 class Planner {
   public:
     Planner(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
             std::vector<Root> const& roots, std::int64_t slots,
             std::span<std::uint8_t const> restricted)
-        : runs_(runs),
+        : segments_(runs, levels, slots),
           levels_(levels),
           roots_(roots),
           restricted_(restricted),
-          node_(static_cast<std::size_t>(slots)) {
-        for (Run const& run : runs) know(run.slot, run.body, run.next);
-        for (int l = 0; l < end(); ++l)
-            for (Merge const& m : levels[static_cast<std::size_t>(l)]) {
-                know(m.slot, m.first, m.next);
-                know(m.inboard, m.first, m.joint);
-                know(m.outboard, m.joint, m.next);
-                of(m.inboard).met = of(m.outboard).met = l;
-                of(m.inboard).up = of(m.outboard).up = m.slot;
-                of(m.slot).leaves = of(m.inboard).leaves + of(m.outboard).leaves;
-            }
-        for (Node& node : node_) node.whole = node.joint;
-        for (int l = end(); l-- > 0;)
-            for (Merge const& m : levels[static_cast<std::size_t>(l)]) {
-                Node const& all = of(m.slot);
-                of(m.inboard).whole = of(m.outboard).whole = all.whole;
-                of(m.inboard).along = all.along;
-                of(m.outboard).along = all.along + of(m.inboard).leaves;
-            }
+          root_of_(static_cast<std::size_t>(slots), -1),
+          seats_(static_cast<std::size_t>(slots)) {
+        for (std::size_t i = 0; i < roots.size(); ++i)
+            root_of_[static_cast<std::size_t>(roots[i].slot)] = static_cast<std::int64_t>(i);
     }
+    /// Number of levels of merges.
     int end() const { return static_cast<int>(levels_.size()); }
-
-    std::vector<std::int64_t> runs() const {
-        std::vector<std::int64_t> slots;
-        for (Run const& run : runs_) slots.push_back(run.slot);
-        return slots;
-    }
-    /// Returns the segments that merges of levels `first` to `end_level` - 1 need and do not
-    /// produce themselves, along the chains.
-    std::vector<std::int64_t> needed(int first, int end_level) const {
-        std::vector<std::uint8_t> made(node_.size(), 0);
-        std::vector<std::int64_t> slots;
-        for (int l = first; l < end_level; ++l)
-            for (Merge const& m : levels_[static_cast<std::size_t>(l)]) {
-                for (std::int64_t const slot : {m.inboard, m.outboard})
-                    if (!made[static_cast<std::size_t>(slot)]) slots.push_back(slot);
-                made[static_cast<std::size_t>(m.slot)] = 1;
-            }
-        sort(slots);
-        return slots;
-    }
 
     /// Appends stages for all levels from `level` on, with up to `most` items per block. Larger
     /// sets are reduced by several levels, by up to `together` narrower blocks if these suffice.
@@ -82,15 +69,15 @@ class Planner {
     /// all of these, it can exchange them with the other ranks.
     void add_upper(int level, std::int64_t most, std::int64_t together,
                    std::vector<Stage>& stages) {
-        for (std::vector<std::int64_t> left = needed(level, end()); !left.empty();
-             left = needed(level, end())) {
+        for (std::vector<std::int64_t> left = segments_.needed(level, end()); !left.empty();
+             left = segments_.needed(level, end())) {
             std::int64_t width = most;
             for (std::int64_t half = most / 2;
                  half * half >= std::ssize(left) && half * together >= std::ssize(left); half /= 2)
                 width = half;
             int const end_level =
                 std::ssize(left) <= most ? end() : std::min(end(), level + levels_above(width));
-            std::vector<std::int64_t> items = needed(level, end_level);
+            std::vector<std::int64_t> items = segments_.needed(level, end_level);
             if (std::vector<std::int64_t> all = items; end_level == end()) {
                 add_units(stages, all);
                 if (std::ssize(all) <= most) items = std::move(all);
@@ -126,14 +113,8 @@ class Planner {
     }
 
   private:
-    /// Segment during planning, indexed by slot.
-    struct Node {
-        std::int64_t joint = 0, next = 0;  // storage indices of the joints at its ends
-        std::int64_t up = -1;              // slot of the segment that it is merged into; -1: none
-        int met = -1;                      // level of that merge; -1: none
-        std::int64_t whole = 0;            // first joint of the largest segment that contains it
-        // Number of its leaves, and number of leaves of the largest segment that precede them.
-        std::int64_t leaves = 1, along = 0;
+    /// Place of a segment and of the force at its outboard joint, in the stage planned last.
+    struct Seat {
         std::int64_t block = -1;
         std::int32_t place = 0, next_place = 0;
     };
@@ -142,45 +123,25 @@ class Planner {
     void add_units(std::vector<Stage> const& stages, std::vector<std::int64_t>& items) const {
         for (Stage const& s : stages)
             for (StageTransfer const& up : s.segments_up)
-                if (of(up.at).met < 0) items.push_back(up.at);
-        sort(items);
+                if (segments_.of(up.at).met < 0) items.push_back(up.at);
+        segments_.sort(items);
         items.erase(std::unique(items.begin(), items.end()), items.end());
     }
-    /// Sorts segments along the chains. Joint indices would not do: joints above the units of a
-    /// shared chain are stored in another order.
-    void sort(std::vector<std::int64_t>& slots) const {
-        std::sort(slots.begin(), slots.end(), [&](std::int64_t a, std::int64_t b) {
-            return std::pair(of(a).whole, of(a).along) < std::pair(of(b).whole, of(b).along);
-        });
-    }
-    Node& of(std::int64_t slot) { return node_[static_cast<std::size_t>(slot)]; }
-    Node const& of(std::int64_t slot) const { return node_[static_cast<std::size_t>(slot)]; }
-    void know(std::int64_t slot, std::int64_t joint, std::int64_t next) {
-        of(slot).joint = joint, of(slot).next = next;
-    }
-    /// True if the segment is not merged below `end_level`.
-    bool is_top(std::int64_t slot, int end_level) const {
-        return of(slot).met < 0 || of(slot).met >= end_level;
-    }
-    /// Slot of the largest segment below `end_level` that contains the given one.
-    std::int64_t ancestor(std::int64_t slot, int end_level) const {
-        while (!is_top(slot, end_level)) slot = of(slot).up;
-        return slot;
-    }
-
     /// Assigns neighbouring items to blocks; items that are merged below `end_level` share a block.
     void deal(std::vector<std::int64_t> const& items, std::int64_t width, int end_level, Stage& s) {
         for (std::int64_t i = 0; i < std::ssize(items);) {
             std::int64_t next = i;
-            std::int64_t const top = ancestor(items[static_cast<std::size_t>(i)], end_level);
+            std::int64_t const top =
+                segments_.ancestor(items[static_cast<std::size_t>(i)], end_level);
             while (next < std::ssize(items) &&
-                   ancestor(items[static_cast<std::size_t>(next)], end_level) == top)
+                   segments_.ancestor(items[static_cast<std::size_t>(next)], end_level) == top)
                 ++next;
             if (s.item.empty() || next - s.item.back().begin > width) s.item.push_back({i, i});
             s.item.back().end = next;
             i = next;
         }
-        for (std::int64_t const slot : items) s.items.push_back({slot, of(slot).joint, 0, false});
+        for (std::int64_t const slot : items)
+            s.items.push_back({slot, segments_.of(slot).joint, 0, false});
     }
     /// Assigns places to a block's items and forces. The force after an item comes from another
     /// stage if it is not the inboard force of the block's next item.
@@ -189,24 +150,24 @@ class Planner {
         std::vector<StageTransfer> from_elsewhere;
         for (std::int64_t i = range.begin; i < range.end; ++i) {
             StageItem& item = s.items[static_cast<std::size_t>(i)];
-            Node& node = of(item.slot);
-            node.block = static_cast<std::int64_t>(b);
-            node.place = static_cast<std::int32_t>(i - range.begin);
-            if (i + 1 < range.end && s.items[static_cast<std::size_t>(i + 1)].joint == node.next) {
-                item.next = node.place + 1;
+            std::int64_t const next = segments_.of(item.slot).next;
+            Seat& seat = seat_of(item.slot);
+            seat.block = static_cast<std::int64_t>(b);
+            seat.place = static_cast<std::int32_t>(i - range.begin);
+            if (i + 1 < range.end && s.items[static_cast<std::size_t>(i + 1)].joint == next) {
+                item.next = seat.place + 1;
             } else {
-                auto found =
-                    std::find_if(from_elsewhere.rbegin(), from_elsewhere.rend(),
-                                 [&](StageTransfer const& h) { return h.at == node.next; });
+                auto found = std::find_if(from_elsewhere.rbegin(), from_elsewhere.rend(),
+                                          [&](StageTransfer const& h) { return h.at == next; });
                 if (found == from_elsewhere.rend()) {
                     from_elsewhere.push_back({static_cast<std::int32_t>(range.end - range.begin +
                                                                         std::ssize(from_elsewhere)),
-                                              node.next});
+                                              next});
                     found = from_elsewhere.rbegin();
                 }
                 item.next = found->place;
             }
-            node.next_place = item.next;
+            seat.next_place = item.next;
         }
         s.down.push_back({std::ssize(s.forces_down), 0});
         s.forces_down.insert(s.forces_down.end(), from_elsewhere.begin(), from_elsewhere.end());
@@ -216,8 +177,8 @@ class Planner {
     /// Appends the merges of one level, in the blocks of their inboard segments.
     void add_level(Stage& s, int level, int l) {
         for (Merge const& m : levels_[static_cast<std::size_t>(level)]) {
-            Node const inboard = of(m.inboard), outboard = of(m.outboard);
-            Node& joined = of(m.slot);
+            Seat const inboard = seat_of(m.inboard), outboard = seat_of(m.outboard);
+            Seat& joined = seat_of(m.slot);
             joined.block = inboard.block, joined.place = inboard.place,
             joined.next_place = outboard.next_place;
             Range& range = s.merge[static_cast<std::size_t>(joined.block * s.levels + l)];
@@ -227,20 +188,9 @@ class Planner {
                                 restricted_at(m.joint), m.joint});
         }
     }
+    Seat& seat_of(std::int64_t slot) { return seats_[static_cast<std::size_t>(slot)]; }
     std::int32_t restricted_at(std::int64_t joint) const {
         return restricted_.empty() ? 0 : restricted_[static_cast<std::size_t>(joint)];
-    }
-    /// Sorts the merges by block, then by level.
-    static void sort_by_block(Stage& s) {
-        std::vector<StageMerge> sorted;
-        sorted.reserve(s.merges.size());
-        for (Range& range : s.merge) {
-            auto const begin = std::ssize(sorted);
-            sorted.insert(sorted.end(), s.merges.begin() + range.begin,
-                          s.merges.begin() + range.end);
-            range = {begin, std::ssize(sorted)};
-        }
-        s.merges = std::move(sorted);
     }
     /// Determines what a stage passes on below `end_level`. Roots are closed; all other complete
     /// segments are stored for later stages. The forces at the first joints of both come from there
@@ -248,17 +198,12 @@ class Planner {
     void hand_over(Stage& s, std::vector<std::int64_t> const& items, int first, int end_level) {
         std::vector<std::vector<std::int64_t>> tops(s.item.size());
         auto const see = [&](std::int64_t slot) {
-            if (is_top(slot, end_level))
-                tops[static_cast<std::size_t>(of(slot).block)].push_back(slot);
+            if (segments_.is_top(slot, end_level))
+                tops[static_cast<std::size_t>(seat_of(slot).block)].push_back(slot);
         };
         for (std::int64_t const slot : items) see(slot);
         for (int l = first; l < end_level; ++l)
             for (Merge const& m : levels_[static_cast<std::size_t>(l)]) see(m.slot);
-        if (root_of_.empty()) {
-            root_of_.assign(node_.size(), -1);
-            for (std::size_t i = 0; i < roots_.size(); ++i)
-                root_of_[static_cast<std::size_t>(roots_[i].slot)] = static_cast<std::int64_t>(i);
-        }
         std::vector<StageTransfer> down;
         for (std::size_t b = 0; b < tops.size(); ++b) {
             Range root{std::ssize(s.roots), 0}, up{std::ssize(s.segments_up), 0};
@@ -266,15 +211,16 @@ class Planner {
             down.insert(down.end(), s.forces_down.begin() + s.down[b].begin,
                         s.forces_down.begin() + s.down[b].end);
             for (std::int64_t const slot : tops[b]) {
-                Node const& top = of(slot);
+                std::int32_t const place = seat_of(slot).place;
+                std::int64_t const joint = segments_.of(slot).joint;
                 std::int64_t const closed = root_of_[static_cast<std::size_t>(slot)];
                 if (closed >= 0)
-                    s.roots.push_back({top.place, restricted_at(top.joint),
-                                       roots_[static_cast<std::size_t>(closed)]});
+                    s.roots.push_back(
+                        {place, restricted_at(joint), roots_[static_cast<std::size_t>(closed)]});
                 else
-                    s.segments_up.push_back({top.place, slot});
-                down.push_back({top.place, top.joint});
-                s.items[static_cast<std::size_t>(s.item[b].begin + top.place)].given = true;
+                    s.segments_up.push_back({place, slot});
+                down.push_back({place, joint});
+                s.items[static_cast<std::size_t>(s.item[b].begin + place)].given = true;
             }
             root.end = std::ssize(s.roots);
             up.end = std::ssize(s.segments_up);
@@ -285,12 +231,12 @@ class Planner {
         s.forces_down = std::move(down);
     }
 
-    std::vector<Run> const& runs_;
+    Segments segments_;
     std::vector<std::vector<Merge>> const& levels_;
     std::vector<Root> const& roots_;
     std::span<std::uint8_t const> restricted_;
-    std::vector<Node> node_;             // indexed by slot
-    std::vector<std::int64_t> root_of_;  // indexed by slot
+    std::vector<std::int64_t> root_of_;  // index of the root that a slot closes; -1: none
+    std::vector<Seat> seats_;            // indexed by slot
 };
 
 /// Number of runs of a block with one thread for every part.
@@ -387,7 +333,7 @@ StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merg
             width_of_runs(std::ssize(runs), plan.runs_apart, planner.end(), sizes);
         level = std::ssize(runs) <= width ? planner.end()
                                           : std::min(planner.end(), levels_above(width));
-        plan.stages.push_back(planner.stage(planner.runs(), width, 0, level));
+        plan.stages.push_back(planner.stage(slots_of(runs), width, 0, level));
         plan.stages.back().of_runs = !plan.runs_apart;
     }
     planner.add_upper(level, sizes.most, sizes.together, plan.stages);
@@ -415,7 +361,7 @@ std::vector<ScanStage> plan_scan(std::vector<Run> const& runs,
     if (!runs.empty()) {
         level =
             std::ssize(runs) <= most ? planner.end() : std::min(planner.end(), levels_above(most));
-        stages.push_back(planner.stage(planner.runs(), most, 0, level));
+        stages.push_back(planner.stage(slots_of(runs), most, 0, level));
         stages.back().of_runs = true;
     }
     planner.add_upper(level, most, 0, stages);

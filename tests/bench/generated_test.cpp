@@ -18,16 +18,16 @@ TEST(GeneratedScenes, AlikeBodiesAreAlikeAndOfTheSameKind) {
             return *system.groups().front();
         };
         ChainSystem const random(scene, Axes::joint, *alone);
-        EXPECT_FALSE(group_of(random).inverse_mass.alike());
+        EXPECT_FALSE(group_of(random).bodies.inverse_mass.alike());
         make_alike(scene);
         ChainSystem alike(scene, Axes::joint, *alone);
         ChainGroup const& group = group_of(alike);
         EXPECT_EQ(group.directions, group_of(random).directions);
         EXPECT_EQ(group.planar, group_of(random).planar);
-        EXPECT_TRUE(group.inverse_mass.alike() && group.inverse_inertia.alike() &&
-                    group.screw.alike());
-        EXPECT_TRUE(group.r1.alike() && group.r2.alike() && group.axes1.alike() &&
-                    group.axes2.alike());
+        EXPECT_TRUE(group.bodies.inverse_mass.alike() && group.bodies.inverse_inertia.alike() &&
+                    group.joints.screw.alike());
+        EXPECT_TRUE(group.bodies.r1.alike() && group.bodies.r2.alike() &&
+                    group.bodies.axes1.alike() && group.bodies.axes2.alike());
         alike.evaluate();
         EXPECT_LE(alike.residual(), alike.residual_bound());
     }

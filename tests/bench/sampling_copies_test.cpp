@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "bench/dense_chains.hpp"
 #include "dynamics/absolute_dynamics.hpp"
 #include "structure/calvados2.hpp"
 
@@ -46,6 +49,65 @@ TEST(SamplingCopies, EachHasTheForcesThatItHasAlone) {
         EXPECT_LT(largest_difference(one.forces(own), force, 140 * copy), 1e-4 * largest);
         EXPECT_LT(largest_difference(exact.forces(own), force, 140 * copy), 1e-4 * largest);
     }
+}
+
+TEST(DenseChains, PairsAreCountedAsByComparingAll) {
+    std::mt19937_64 draw(5);
+    for (Vec3 const& box : {Vec3{3, 4, 9}, Vec3{1.7, 1.7, 1.7}, Vec3{20, 2, 5}}) {
+        std::uniform_real_distribution<double> anywhere(-2, 3);
+        std::vector<Vec3> x(400);
+        for (Vec3& each : x)
+            for (int i = 0; i < 3; ++i) each[i] = box[i] * anywhere(draw);
+        for (double const radius : {0.3, 0.8}) {
+            std::int64_t pairs = 0;
+            for (std::size_t a = 0; a < x.size(); ++a)
+                for (std::size_t b = 0; b < a; ++b) {
+                    Vec3 d = x[a] - x[b];
+                    for (int i = 0; i < 3; ++i) d[i] -= box[i] * std::round(d[i] / box[i]);
+                    pairs += norm(d) <= radius;
+                }
+            EXPECT_GT(pairs, 0);
+            EXPECT_EQ(pairs_within(x, radius, box, this_thread()), pairs) << radius;
+        }
+    }
+}
+
+TEST(DenseChains, DensityIsSeenByMass) {
+    Vec3 const box{2, 3, 10};
+    ASSERT_EQ(long_axis(box), 2);
+    EXPECT_FALSE(long_axis({2, 3, 5}).has_value());
+    EXPECT_EQ(long_axis({9, 3, 4}), 0);
+    // All mass in one slice of 6 nm^3, then shared between two, one of them across the boundary.
+    EXPECT_NEAR(density_seen({{0, 0, 3.5}, {1, 1, 13.9}}, {60, 120}, box, 2), 180 / 6.0, 1e-12);
+    EXPECT_NEAR(density_seen({{0, 0, -0.5}, {1, 1, 3.9}}, {60, 60}, box, 2), 60 / 6.0, 1e-12);
+}
+
+/// The forces and energies are those that OpenMM finds in the box, and no copy is moved.
+TEST(DenseChains, HaveNumbersOfTheirBox) {
+    BenchRequest request;
+    request.sampling.copies = 6;
+    request.sampling.dense = true;
+    request.quiet = true;
+    request.set = {"forces.openmm.platform=Reference"};
+    DenseChains chains(request, *alone, Backend::segments);
+    ASSERT_EQ(chains.chains(), 6);
+    std::vector<Vec3> x = positions_of(chains.scene(0.01, 100));
+    auto const samples = chains.sample(x, BondMeasure::rigid);
+    auto const values = chains.system_values(x);
+    ASSERT_EQ(values.size(), 4U);
+    EXPECT_EQ(values[0].name, "ashbaugh-hatch energy");
+    EXPECT_EQ(values[1].name, "yukawa energy");
+    EXPECT_GT(values[3].value, values[2].value);
+    // A chain that leaves the box at one side is the same at the other.
+    Vec3 const box = *chains.model().box;
+    for (std::size_t k = 0; k < 140; ++k) x[k] = x[k] + Vec3{box[0], 0, -box[2]};
+    auto const moved = chains.sample(x, BondMeasure::rigid);
+    auto const same = chains.system_values(x);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        EXPECT_NEAR(same[i].value, values[i].value, 1e-9 * std::abs(values[i].value));
+    EXPECT_NEAR(moved[0].virial, samples[0].virial, 1e-7 * std::abs(samples[0].virial));
+    x[3][1] = NAN;
+    EXPECT_TRUE(std::isnan(chains.nearest(x)));
 }
 
 /// The variance of a bond is kT over its stiffness, and no bead goes far: beads that are close

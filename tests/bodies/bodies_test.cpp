@@ -81,8 +81,8 @@ TEST(Bodies, free_base) {
         "velocity: [7, 8, 9]}}}" +
             second,
         "free");
-    EXPECT_EQ(b.free_position[1], 2);
-    EXPECT_EQ(b.free_velocity[2], 9);
+    EXPECT_EQ(b.free_base.position[1], 2);
+    EXPECT_EQ(b.free_base.velocity[2], 9);
     EXPECT_EQ(b.qd[0][0], 4);
     EXPECT_EQ(b.q[0][2], 1);
 }

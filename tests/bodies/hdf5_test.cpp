@@ -118,7 +118,7 @@ TEST_F(Hdf5Bodies, types_by_number_and_defaults) {
               (std::vector<JointType>{JointType::free, JointType::revolute, JointType::weld}));
     EXPECT_EQ(b.q[0], (std::array<double, 4>{1, 0, 0, 0}));
     EXPECT_EQ(b.q[1], (std::array<double, 4>{0, 0, 0, 0}));
-    EXPECT_EQ(b.free_position[2], 3);
+    EXPECT_EQ(b.free_base.position[2], 3);
     EXPECT_EQ(b.inertia[1](1, 0), 0.1);
     EXPECT_EQ(b.axis[1][2], 1);
     EXPECT_TRUE(b.torque.empty() && b.stiffness.empty() && b.wrench.empty() &&

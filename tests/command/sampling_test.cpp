@@ -126,7 +126,50 @@ TEST(Sampling, ARowEndsWithItsSeconds) {
     EXPECT_EQ(none.json().at("results")[0].at("state"), "too short");
 }
 
+TEST(Sampling, DenseChainsAreSampledInTheirBox) {
+    TemporaryFolder const folder;
+    std::string const file = folder / "dense.yaml";
+    std::ofstream(file)
+        << "title: a small slab\n"
+           "chains: [{name: ten, count: 12, sequence: MDVFMKGLSK, model: calvados2, "
+           "conformation: self_avoiding}]\n"
+           "box: {periodic: [8.2, 8.2, 20]}\n"
+           "place: {slab: {axis: z, thickness: 6}}\n"
+           "forces: {openmm: {builder: calvados2, platform: CPU}}\n"
+           "dynamics: {integrator: g-baoab, step: 0.01, temperature: 300, "
+           "friction: 1}\n";
+    Ended const e = catena(sampling(
+        file, {"--dense", "--duration", "8", "--discard", "1", "--equilibrate", "1", "--every",
+               "0.5", "--steps", "0.01,0.02", "--methods", "rigid,bonds", "--json", "-"}));
+    expect_good(e);
+    Json const json = e.json();
+    EXPECT_EQ(json.at("dense"), true);
+    ASSERT_EQ(json.at("results").size(), 4U);
+    for (Json const& row : json.at("results")) {
+        EXPECT_EQ(row.at("state"), "VALID") << row;
+        EXPECT_NEAR(row.at("total_ns").get<double>(), 0.008, 1e-9);
+        Json const& system = row.at("system");
+        for (char const* const name : {"ashbaugh-hatch energy", "yukawa energy",
+                                       "pairs within 0.5 nm", "pairs within 0.8 nm"})
+            EXPECT_TRUE(system.at(name).at("mean").is_number()) << name;
+        // 120 residues of 9.5 kDa in 6 of 20 nm: more than the mean over the box, less than all in
+        // a nanometre.
+        double const density = system.at("density seen").at("mean");
+        EXPECT_GT(density, 1.66 * 13e3 / (8.2 * 8.2 * 20));
+        EXPECT_LT(density, 1.66 * 14e3 / (8.2 * 8.2));
+        EXPECT_GT(row.at("diffusion_of_chains").at("mean").get<double>(), 0);
+    }
+    EXPECT_EQ(json.at("verdicts")[0].at("biases")[1].at("density seen").size(), 2U);
+}
+
 TEST(Sampling, WhatCannotBeSampledIsRefused) {
+    expect_refused(
+        catena({"bench", "sampling", input("condensate.yaml"), "--dense", "--copies", "2"}), 2,
+        "--dense takes all chains of SCENE (--copies)");
+    expect_refused(catena({"bench", "sampling", input("alpha-synuclein.yaml"), "--dense", "--set",
+                           "box=none"}),
+                   2, "takes a scene with a periodic box");
+    expect_refused(catena({"bench", "openmm", "--dense"}), 2, "does not take --dense");
     expect_refused(catena({"bench", "sampling", "--methods", "rigid,bond"}), 2,
                    "did you mean `bonds`?");
     expect_refused(catena({"bench", "sampling", "--steps", "0.01,fast"}), 2,

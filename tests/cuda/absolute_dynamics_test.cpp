@@ -194,7 +194,7 @@ TEST_P(GpuAbsolute, EachOperationLeavesTheBitsOfTheHost) {
         });
         if (step == 0)
             both("drawn velocities", [](AbsoluteDynamics& d) {
-                d.draw_velocities(2.5, 7, std::vector<bool>(d.group().chain.size(), true));
+                d.draw_velocities(2.5, 7, std::vector<bool>(d.group().chains.size(), true));
             });
         both("forces from outside", [](AbsoluteDynamics& d) {
             ConstView<3> const position = d.bead_positions();

@@ -187,11 +187,11 @@ TEST_F(Gpu, AlikeBodies) {
         ChainSystem const system(scene, Axes::joint, *communicator_);
         ChainGroup const& group = *system.groups().front();
         bool const one = group.size > 512;
-        EXPECT_EQ(cuda::one_tile_serves(group.inverse_mass), one);
-        EXPECT_EQ(group.r1.size() > 0 && cuda::one_tile_serves(group.r1),
-                  one && group.r1.size() > 0);
-        EXPECT_EQ(group.r2.size() > 0 && cuda::one_tile_serves(group.r2),
-                  one && group.r2.size() > 0);
+        EXPECT_EQ(cuda::one_tile_serves(group.bodies.inverse_mass), one);
+        EXPECT_EQ(group.bodies.r1.size() > 0 && cuda::one_tile_serves(group.bodies.r1),
+                  one && group.bodies.r1.size() > 0);
+        EXPECT_EQ(group.bodies.r2.size() > 0 && cuda::one_tile_serves(group.bodies.r2),
+                  one && group.bodies.r2.size() > 0);
     };
     auto const of = [](std::string const& generator, int bodies,
                        std::string const& rest = "base: fixed") {

@@ -63,7 +63,7 @@ DenseMatrix mobility(ChainSpec const& chain, std::vector<Coordinate> const& at) 
     for (DrivenJoint& driven : b.driven)
         for (PrescribedMotion& course : driven.course)
             course = {scene::value_at(course, 0), 0, 0, 0, 0};
-    b.free_velocity = Vec3::zero();
+    b.free_base.velocity = Vec3::zero();
     b.torque.assign(b.size(), Vec3::zero());
     auto const n = static_cast<Eigen::Index>(at.size());
     DenseMatrix m(n, n);

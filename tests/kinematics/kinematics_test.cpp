@@ -24,7 +24,7 @@ class MovedIn {
         kinematics_.evaluate(state_.view(), true, motion_.view());
     }
     ChainGroup const& group() const { return *groups_[0]; }
-    JointsView joints() const { return kinematics_.joints(); }
+    JointsView joints() const { return kinematics_.joints().view(); }
     StateView state() { return state_.view(); }
     /// Everything about a body.
     std::vector<double> of(std::int64_t k) const {
@@ -37,7 +37,7 @@ class MovedIn {
         add(motion_.omega[k]);
         add(motion_.origin[k]);
         add(motion_.velocity[k]);
-        if (group().moving_meeting() && !group().is_last[static_cast<std::size_t>(k)]) {
+        if (group().joints.moving_meeting() && !group().ends.is_last[static_cast<std::size_t>(k)]) {
             add(motion_.r2[k]);
             add(motion_.axes2[k]);
         }
@@ -86,7 +86,8 @@ TEST(Kinematics, GoesFromJointToJoint) {
                 Motion at = Motion::none();
                 double const eps = 1e-14 * static_cast<double>(bodies);
                 for (std::int64_t k = 0; k < moved.group().size; ++k) {
-                    if (moved.group().is_first[static_cast<std::size_t>(k)]) at = Motion::none();
+                    if (moved.group().ends.is_first[static_cast<std::size_t>(k)])
+                        at = Motion::none();
                     at = compose<true>(
                         at, moved.joints().motion(moved.state(), k,
                                                   moved.joints().turn_of(moved.state(), k)));
@@ -150,14 +151,14 @@ class RevolutesIn {
           joint_load_(group().size),
           given_(group().size),
           torque_(group().size),
-          inertia_(group().inertia),
+          inertia_(group().bodies.inertia),
           bias_(group().size + 1, group().directions),
           in_run_(static_cast<std::size_t>(group().size), 0) {
         for (std::int64_t k = 0; k < group().size; ++k)
             given_.view().at(k, 0) = 0.1 * static_cast<double>(k % 7);
         for (dca::Run const& run : group().schedule.runs)
             for (std::int64_t k = run.body; run.count > 1 && k < run.body + run.count; ++k)
-                if (!group().is_first[static_cast<std::size_t>(k)])
+                if (!group().ends.is_first[static_cast<std::size_t>(k)])
                     in_run_[static_cast<std::size_t>(k)] =
                         k == run.body ? RevolutesInRuns::first : RevolutesInRuns::within;
     }
@@ -166,12 +167,12 @@ class RevolutesIn {
     std::vector<std::uint64_t> find(bool joint_loads, bool all_turns) {
         for (std::int64_t k = 0; k < group().size; ++k) {
             state_.view().qd.at(k, 0) = 1.1 * state_.view().qd.at(k, 0) + 0.01;
-            if (group().joint[static_cast<std::size_t>(k)] == JointType::revolute)
+            if (group().joints.type[static_cast<std::size_t>(k)] == JointType::revolute)
                 state_.view().q.at(k, 0) += 0.3;
         }
         JointLoads loads;
-        loads.scan = kinematics_.scan(state_.view(), motion_.view());
-        loads.scan.motion.orients_first_alone = true;
+        loads.moved.scan = kinematics_.scan(state_.view(), motion_.view());
+        loads.moved.scan.motion.orients_first_alone = true;
         loads.in_run = {in_run_.data()};
         loads.left = {false, true, true};
         loads.given.gravity = {{1, 2, -9.81}};
@@ -179,8 +180,8 @@ class RevolutesIn {
         loads.inertia = inertia_.view();
         loads.torque = torque_.view();
         loads.bias = bias_.view();
-        loads.fixed_axes2 = group().axes2.view();
-        loads.fixed_r2 = group().r2.view();
+        loads.moved.fixed_axes2 = group().bodies.axes2.view();
+        loads.moved.fixed_r2 = group().bodies.r2.view();
         loads.joint_load = joint_load_.view();
         loads.given.torque = given_.view();
         loads.given.joint_loads = joint_loads;

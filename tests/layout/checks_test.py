@@ -94,7 +94,6 @@ def of_homes():
     yield expect("21 data members", more, 1, "class Full has 26 lines and 21 data members")
     long = homes(**{"src/run/a.hpp": "struct Long {\n" + "    void f();\n" * 249 + "};\n"})
     yield expect("251 lines", long, 1, "class Long has 251 lines and 0 data members")
-    yield expect("a class listed in vain", homes(**{"src/run/a.hpp": "class TreeSolver {\n};\n"}), 1, "remove it from LARGER")
 
 
 def of_pages():

@@ -71,8 +71,9 @@ TEST(Field, AlikeBodiesOfAChainHaveAlikeHandles) {
         "alike.yaml");
     ChainSystem const system(scene, Axes::joint, *alone);
     ChainGroup const& group = *system.groups().front();
-    EXPECT_TRUE(group.inverse_mass.alike() && group.inverse_inertia.alike());
-    EXPECT_TRUE(group.r1.alike() && group.r2.alike() && group.axes1.alike() && group.axes2.alike());
+    EXPECT_TRUE(group.bodies.inverse_mass.alike() && group.bodies.inverse_inertia.alike());
+    EXPECT_TRUE(group.bodies.r1.alike() && group.bodies.r2.alike() && group.bodies.axes1.alike() &&
+                group.bodies.axes2.alike());
 }
 
 }  // namespace

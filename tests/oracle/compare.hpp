@@ -140,8 +140,9 @@ inline ChainSpec moved(ChainSpec chain, oracle::OracleResult<double> const& a, d
         }
         b.qd[k] = b.qd[k] + h * a.qdd[k];
     }
-    b.free_position = b.free_position + h * (b.free_velocity + (0.5 * h) * a.base_acceleration);
-    b.free_velocity = b.free_velocity + h * a.base_acceleration;
+    b.free_base.position =
+        b.free_base.position + h * (b.free_base.velocity + (0.5 * h) * a.base_acceleration);
+    b.free_base.velocity = b.free_base.velocity + h * a.base_acceleration;
     return chain;
 }
 

@@ -146,7 +146,7 @@ TEST_P(Motion, PosesFollowTheDefinition) {
             shift = q[0] * b.first_axis[i] + q[1] * cross(b.axis[i], b.first_axis[i]);
         }
         bool const free = type == JointType::free;
-        x = free ? b.free_position : x + r * (b.translation[i] + b.rotation[i] * shift);
+        x = free ? b.free_base.position : x + r * (b.translation[i] + b.rotation[i] * shift);
         r = free ? to_matrix(turn) : r * (b.rotation[i] * to_matrix(turn));
         EXPECT_LE(norm(k.origin[i] - x), 64 * 0x1p-52);
         for (int j = 0; j < 3; ++j)

@@ -113,7 +113,7 @@ class ComparedSolver final : public ChainSolver {
         EXPECT_TRUE(
             same_numbers(out.joint_force, found.joint_force, group_.size + 1, group_.directions));
         for (std::int64_t k = 0; out.tip_force && k < group_.size; ++k) {  // of last bodies alone
-            if (!group_.has_jointed_tip(k)) continue;
+            if (!group_.ends.has_jointed_tip(k)) continue;
             for (int i = 0; i < group_.directions; ++i)
                 EXPECT_EQ(out.tip_force.origin[i * out.tip_force.pitch + k],
                           found.tip_force.origin[i * found.tip_force.pitch + k]);
@@ -131,7 +131,7 @@ class ComparedSolver final : public ChainSolver {
         std::vector<dca::Run> const& runs = group_.schedule.runs;
         for (std::size_t r = 0; r < runs.size(); ++r) {
             dca::Run const& run = runs[r];
-            if (run.count == 1 || group_.is_first[static_cast<std::size_t>(run.body)] != 0)
+            if (run.count == 1 || group_.ends.is_first[static_cast<std::size_t>(run.body)] != 0)
                 expect_same_body(run.body);
             if (r + 1 == runs.size() || runs[r + 1].count == 1)
                 expect_same_body(run.body + run.count - 1);

@@ -267,8 +267,8 @@ ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options) {
     if (!b.first_axis.empty()) b.first_axis.resize(options.bodies, Vec3::zero());
     if (!b.pitch.empty()) b.pitch.resize(options.bodies, 0);
     if (options.base == Base::free) {
-        b.free_position = random.vector(1);
-        b.free_velocity = options.moving ? random.vector(1) : Vec3::zero();
+        b.free_base.position = random.vector(1);
+        b.free_base.velocity = options.moving ? random.vector(1) : Vec3::zero();
     }
     for (std::size_t k = 0; k < options.bodies && options.drag; ++k)
         b.drag.push_back({random.uniform(0, 1), random.uniform(0, 0.1)});

@@ -49,7 +49,7 @@ void cut_bodies(ChainSpec& chain, Cut const& cut) {
     };
     b.joint[0] = JointType::free;  // where its joint frame was; nothing else is left of the joint
     b.q[0] = {1, 0, 0, 0};
-    b.free_position = b.translation[0];
+    b.free_base.position = b.translation[0];
     clear(b.torque, Vec3::zero()), clear(b.stiffness, Vec3::zero()), clear(b.damping, Vec3::zero()),
         clear(b.first_axis, Vec3::zero());
     clear(b.pitch, 0.0), clear(b.rest, b.q[0]);
@@ -82,7 +82,7 @@ void zero(std::vector<Vec3>& values) { std::fill(values.begin(), values.end(), V
 void clear_velocities(ChainSpec& chain) {
     zero(chain.bodies.qd), zero(chain.beads.velocity), zero(chain.linked.velocity),
         zero(chain.linked.omega);
-    chain.bodies.free_velocity = Vec3::zero();
+    chain.bodies.free_base.velocity = Vec3::zero();
 }
 
 /// What may be left out as a whole.
@@ -179,8 +179,8 @@ std::string describe(ChainSpec const& chain) {
         chain.tip == Tip::free ? "free" : name_of(chain.tip_joint.type));
     BodyArrays const& b = chain.bodies;
     if (b.size() > 0 && chain.base == Base::free)
-        lines += fmt::format("  position {}, velocity {}\n", text(b.free_position),
-                             text(b.free_velocity));
+        lines += fmt::format("  position {}, velocity {}\n", text(b.free_base.position),
+                             text(b.free_base.velocity));
     for (std::size_t k = 0; k < b.size(); ++k) lines += describe_body(b, k);
     for (std::size_t k = 0; k < chain.beads.size(); ++k)
         lines += fmt::format("  {} bead: mass {:.17g}, position {}, velocity {}\n", k + 1,

@@ -8,13 +8,14 @@ namespace {
 bool is_regular(ChainGroup const& group, Run const& run, RunsTaken const& taken) {
     std::int64_t const last = run.body + run.count - 1;
     if (run.count > longest_run || run.count < (taken.of_parts ? part_length : longest_run) ||
-        group.has_jointed_tip(last))
+        group.ends.has_jointed_tip(last))
         return false;
     auto const at = [](std::int64_t k) { return static_cast<std::size_t>(k); };
-    if (taken.read_neighbours && (group.is_first[at(run.body)] || group.is_last[at(last)]))
+    if (taken.read_neighbours &&
+        (group.ends.is_first[at(run.body)] || group.ends.is_last[at(last)]))
         return false;
     for (std::int64_t k = run.body + 1; k <= last; ++k)
-        if (group.restricted_of_joint[at(k)] != group.directions) return false;
+        if (group.joints.restricted[at(k)] != group.directions) return false;
     return true;
 }
 
@@ -100,7 +101,7 @@ std::vector<LevelDealtOut> deal_out_levels(ChainGroup const& group, int lanes) {
             // Otherwise the distribution to ranks could change the results.
             bool const goes =
                 rounds_as_vectors() &&
-                group.restricted_of_joint[static_cast<std::size_t>(m.joint)] == group.directions;
+                group.joints.restricted[static_cast<std::size_t>(m.joint)] == group.directions;
             (goes ? alike : dealt.others.front()).push_back(m);
         }
         std::size_t const left_over = alike.size() % static_cast<std::size_t>(lanes);

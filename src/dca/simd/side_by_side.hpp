@@ -116,7 +116,7 @@ class SideBySide {
                     place = std::copy_n(numbers.data, D, place);
                 });
                 if constexpr (frame_constants<Leaf> > 0)
-                    std::copy_n(group.joint_rotation[k].data, frame_constants<Leaf>, place);
+                    std::copy_n(group.joints.rotation[k].data, frame_constants<Leaf>, place);
             });
         if (items() == 0) return;
         levels_ = deal_out_levels(group, lanes_);

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "clock.hpp"
 #include "dca/branched_leaf.hpp"
 #include "dca/contracts.hpp"
 #include "dca/host_space.hpp"
+#include "dca/solvers/sweep_timer.hpp"
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {
@@ -180,12 +180,12 @@ class BranchedSolver final : public ChainSolver {
     /// the solver.
     BranchedSolver(ChainGroup const& group, Space const& space, Communicator const& communicator)
         : group_(group),
-          branches_(group.branches),
+          branches_(group.branching.paths),
           space_(space),
           alone_(alone(space)),
           communicator_(communicator),
           model_(group),
-          mass_(group.mass),
+          mass_(group.bodies.mass),
           places_(group),
           lists_(branches_, places_),
           forks_(branches_.forks.size(), static_cast<std::size_t>(side_paths())),
@@ -206,19 +206,18 @@ class BranchedSolver final : public ChainSolver {
     }
 
     void assemble_matrices(ConfigurationView const& configuration) override {
-        double const start = seconds_now();
+        SweepTimer const timer(space_, measured_, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
         for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
             space_of(phase).climb(tree_[at(phase)], MatrixSweep<BranchedLeaf>{sweeps_});
             if (phase > 0) each_fork(phase - 1, FoldMatrices{folds()});
         }
         ++report_.matrix_sweeps;
-        add_seconds(report_.matrix_seconds, start);
         if (Space::answers_at_once) check();
     }
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
-        double const start = seconds_now();
+        SweepTimer const timer(space_, measured_, report_.bias_seconds);
         sweeps_.leaf.set(out.joint_force);
         BiasSweep<BranchedLeaf> const sweep{sweeps_, loads, {{}, out.acceleration, {}, {}}};
         for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
@@ -230,7 +229,6 @@ class BranchedSolver final : public ChainSolver {
             space_of(phase).descend(tree_[at(phase)], sweep);
         }
         ++report_.bias_sweeps;
-        add_seconds(report_.bias_seconds, start);
     }
 
     std::vector<double> time_evaluations(ConfigurationView const& configuration,
@@ -276,14 +274,14 @@ class BranchedSolver final : public ChainSolver {
         explicit Places(ChainGroup const& group)
             : fork(at(group.size), -1),
               ends(at(group.size), 0),
-              restricted(at(group.branches.joints), 0) {
-            Branches const& b = group.branches;
+              restricted(at(group.branching.paths.joints), 0) {
+            Branches const& b = group.branching.paths;
             for (std::size_t f = 0; f < b.forks.size(); ++f)
                 fork[at(b.forks[f].place)] = static_cast<std::int32_t>(f);
             for (std::int64_t path = 1; path <= b.paths(); ++path)
                 ends[at(b.first_of_path[at(path)] - 1)] = 1;
             for (std::int64_t place = 0; place < group.size; ++place)
-                restricted[at(place)] = group.restricted_of_joint[at(b.body[at(place)])];
+                restricted[at(place)] = group.joints.restricted[at(b.body[at(place)])];
         }
         std::vector<std::int32_t> fork;
         std::vector<std::uint8_t> ends, restricted;
@@ -362,12 +360,6 @@ class BranchedSolver final : public ChainSolver {
                 lists_.body.data(),
                 lists_.first_of_path.data(),
                 mass_.view()};
-    }
-    /// Adds the seconds since `start`. If the space does not wait for its work, it does so only
-    /// while measurement is on.
-    void add_seconds(double& seconds, double start) {
-        if (measured_) space_.wait();
-        if (measured_ || Space::answers_at_once) seconds += seconds_now() - start;
     }
 
     ChainGroup const& group_;

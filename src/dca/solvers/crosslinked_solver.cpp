@@ -15,8 +15,9 @@ CrossLinkedSolver::CrossLinkedSolver(ChainGroup const& group, Executor const& ex
       tree_(std::move(tree)),
       force_(group.size),
       acceleration_(group.size) {
-    for (std::size_t c = 0; c < group.crosslinks.size(); ++c) {
-        if (c == 0 || group.crosslinks[c].piece != group.crosslinks[c - 1].piece)
+    for (std::size_t c = 0; c < group.branching.crosslinks.size(); ++c) {
+        if (c == 0 ||
+            group.branching.crosslinks[c].piece != group.branching.crosslinks[c - 1].piece)
             links_.push_back({c, c});
         links_.back().end = c + 1;
     }
@@ -28,13 +29,13 @@ CrossLinkedSolver::CrossLinkedSolver(ChainGroup const& group, Executor const& ex
 }
 
 double CrossLinkedSolver::apart(std::size_t crosslink) const {
-    LocalCrossLink const& link = group_.crosslinks[crosslink];
+    LocalCrossLink const& link = group_.branching.crosslinks[crosslink];
     ConstView<3> const a = acceleration_.view();
     return dot(direction(crosslink), a.load(link.outboard) - a.load(link.inboard));
 }
 
 void CrossLinkedSolver::push(std::size_t crosslink, double force) {
-    LocalCrossLink const& link = group_.crosslinks[crosslink];
+    LocalCrossLink const& link = group_.branching.crosslinks[crosslink];
     Vec3 const f = force * direction(crosslink);
     View<3> const forces = force_.view();
     forces.store(link.outboard, forces.load(link.outboard) + f);
@@ -42,8 +43,9 @@ void CrossLinkedSolver::push(std::size_t crosslink, double force) {
 }
 
 double CrossLinkedSolver::free_response(std::size_t crosslink) const {
-    LocalCrossLink const& link = group_.crosslinks[crosslink];
-    return group_.inverse_mass[link.inboard][0] + group_.inverse_mass[link.outboard][0];
+    LocalCrossLink const& link = group_.branching.crosslinks[crosslink];
+    return group_.bodies.inverse_mass[link.inboard][0] +
+           group_.bodies.inverse_mass[link.outboard][0];
 }
 
 void CrossLinkedSolver::respond(std::int64_t round, AccelerationsView const& out) {
@@ -113,7 +115,7 @@ SolverReport CrossLinkedSolver::report() const {
     r.bias_seconds -= swept_for_matrices_;
     r.memory_bytes +=
         static_cast<std::int64_t>(2 * 3 * sizeof(double)) * group_.size +
-        static_cast<std::int64_t>(sizeof(LocalCrossLink)) * std::ssize(group_.crosslinks);
+        static_cast<std::int64_t>(sizeof(LocalCrossLink)) * std::ssize(group_.branching.crosslinks);
     for (Eigen::MatrixXd const& matrix : matrices_)
         r.memory_bytes += static_cast<std::int64_t>(2 * sizeof(double)) * matrix.size();
     return r;
@@ -121,10 +123,10 @@ SolverReport CrossLinkedSolver::report() const {
 
 void CrossLinkedSolver::refuse(Links const& of) const {
     dca::Piece const& piece =
-        group_.pieces[static_cast<std::size_t>(group_.crosslinks[of.first].piece)];
+        group_.pieces[static_cast<std::size_t>(group_.branching.crosslinks[of.first].piece)];
     throw ComputationError("the matrix of the " + std::to_string(of.end - of.first) +
                            " cross-links of chain " +
-                           group_.name[static_cast<std::size_t>(piece.chain)] +
+                           group_.chains[static_cast<std::size_t>(piece.chain)].name +
                            " is not positive semidefinite: check the positions, and masses that "
                            "differ by many decades");
 }

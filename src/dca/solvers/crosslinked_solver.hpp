@@ -27,7 +27,7 @@ class CrossLinkedSolver final : public ChainSolver {
 
     /// Largest number of cross-links of a chain.
     std::int64_t rounds() const { return rounds_; }
-    /// Cross-links of one chain of the group: entries [first, end) of ChainGroup::crosslinks.
+    /// Cross-links of one chain of the group: entries [first, end) of Branching::crosslinks.
     struct Links {
         std::size_t first = 0, end = 0;
         SemidefiniteSystem system = {};

@@ -22,7 +22,7 @@ std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor 
                                               Communicator const& communicator) {
     if (group.handles == Handles::articulated)
         return dca::make_articulated_solver(group, executor, communicator);
-    if (!group.crosslinks.empty())
+    if (!group.branching.crosslinks.empty())
         return std::make_unique<dca::CrossLinkedSolver>(
             group, executor, dca::make_branched_solver(group, executor, communicator));
     if (group.is_branched()) return dca::make_branched_solver(group, executor, communicator);
@@ -35,10 +35,12 @@ std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor 
     if (group.directions == 4)
         return dca::make_joint_solver<4, false>(group, executor, communicator);
     if (group.directions == 5)
-        return group.has_screws ? dca::make_joint_solver<5, true>(group, executor, communicator)
-                                : dca::make_joint_solver<5, false>(group, executor, communicator);
-    return group.has_screws ? dca::make_joint_solver<6, true>(group, executor, communicator)
-                            : dca::make_joint_solver<6, false>(group, executor, communicator);
+        return group.joints.has_screws
+                   ? dca::make_joint_solver<5, true>(group, executor, communicator)
+                   : dca::make_joint_solver<5, false>(group, executor, communicator);
+    return group.joints.has_screws
+               ? dca::make_joint_solver<6, true>(group, executor, communicator)
+               : dca::make_joint_solver<6, false>(group, executor, communicator);
 }
 
 }  // namespace catena

@@ -10,10 +10,12 @@
 #include "dca/contracts.hpp"
 #include "dca/fused_sweep.hpp"
 #include "dca/host_space.hpp"
-#include "dca/inverse_sweep.hpp"
-#include "dca/simd/side_by_side.hpp"
+#include "dca/solvers/links_inverse.hpp"
+#include "dca/solvers/segment_exchange.hpp"
+#include "dca/solvers/side_by_side_tree.hpp"
+#include "dca/solvers/sweep_timer.hpp"
+#include "dca/sweep_store.hpp"
 #include "dca/team_tree.hpp"
-#include "tree/frontier_exchange.hpp"
 
 namespace catena::dca {
 
@@ -25,8 +27,6 @@ class TreeSolver final : public ChainSolver {
     using Sweeps = typename SweepsOf<Leaf>::Sweeps;
     using OfMatrices = typename SweepsOf<Leaf>::OfMatrices;
     using OfBiases = typename SweepsOf<Leaf>::OfBiases;
-    template <class T, Order order>
-    using Records = typename Space::template Records<T, order>;
     // True if evaluations compute runs on revolute joints by articulated-body inertias.
     static constexpr bool takes_runs_whole = requires { requires Leaf::by_inertia; };
     // True if runs of this leaf can be processed side by side in the vectors of this Space.
@@ -40,50 +40,33 @@ class TreeSolver final : public ChainSolver {
           schedule_(group.schedule),
           space_(space),
           communicator_(communicator),
-          model_(space.model(group)),
+          store_(group, space, space.model(group)),
           tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots,
-                group.restricted_of_joint, Sweeps::in_stage),
+                group.joints.restricted, Sweeps::in_stage),
           top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots,
-               group.restricted_of_joint, Sweeps::in_stage),
-          matrices_(schedule_.slots),
-          biases_(schedule_.slots),
-          joints_(schedule_.joints),
-          offsets_(schedule_.joints),
-          forces_(schedule_.joints),
-          shown_matrices_(schedule_, RecordNumbers<typename Sweeps::Matrices>::width, space,
-                          communicator),
-          shown_biases_(schedule_, RecordNumbers<typename Sweeps::Biases>::width, space,
-                        communicator),
-          lost_(1),
-          sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
-                  joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
-        space_.put(lost_.data(), none_lost);
+               group.joints.restricted, Sweeps::in_stage),
+          exchange_(schedule_, space, communicator, at_once()) {
         if constexpr (takes_runs_whole)
             if (at_once())
                 whole_runs_.emplace(schedule_.runs, schedule_.levels, schedule_.roots,
-                                    schedule_.slots, group.restricted_of_joint,
+                                    schedule_.slots, group.joints.restricted,
                                     Sweeps::in_stage_of_whole_runs);
-        if (at_once())
-            shown_both_.emplace(schedule_, NumbersOfSegments::width, space, communicator);
         if constexpr (has_lanes) {
-            aside_.emplace(group, model_.view(), space.simd());
-            if (aside_->items() > 0)
-                lay_out_rest();
-            else
-                aside_.reset();
+            aside_.emplace(group, store_.model().view(), space.simd());
+            if (aside_->empty()) aside_.reset();
         }
     }
 
     /// Matrix sweep: own trees first, then the exchange of shared units, then the top of shared
     /// chains.
     void assemble_matrices(ConfigurationView const& configuration) override {
-        Stopwatch const watch(*this, report_.matrix_seconds);
-        sweeps_.leaf.set(configuration);
+        SweepTimer const timer(space_, measured_, report_.matrix_seconds);
+        sweeps().leaf.set(configuration);
         if (!assemble_by_teams()) {
-            OfMatrices const sweep{sweeps_};
+            OfMatrices const sweep{sweeps()};
             space_.climb(tree_, sweep);
             if (!schedule_.shared.empty()) {
-                gather(of_matrices());
+                gather(exchange_.of_matrices(sweeps()));
                 space_.climb(top_, sweep);
             }
         }
@@ -93,8 +76,8 @@ class TreeSolver final : public ChainSolver {
 
     /// Bias sweep with the matrices assembled last; may be repeated.
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
-        Stopwatch const watch(*this, report_.bias_seconds);
-        up_and_down(tree_, OfBiases{sweeps_, loads, out}, of_biases(), out);
+        SweepTimer const timer(space_, measured_, report_.bias_seconds);
+        up_and_down(tree_, OfBiases{sweeps(), loads, out}, exchange_.of_biases(sweeps()), out);
         ++report_.bias_sweeps;
     }
 
@@ -120,7 +103,7 @@ class TreeSolver final : public ChainSolver {
     std::vector<double> time_evaluations(ConfigurationView const& configuration,
                                          LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
-        return space_.time_chained(chained, repeat, shown_matrices_.asks_host(),
+        return space_.time_chained(chained, repeat, exchange_.asks_host(),
                                    [&] { assemble_and_solve(configuration, loads, out); });
     }
 
@@ -129,26 +112,7 @@ class TreeSolver final : public ChainSolver {
     void invert(InverseView const& out) override {
         if constexpr (Space::answers_at_once && std::is_same_v<Sweeps, TreeSweeps<Leaf>>) {
             if (!inverse_) inverse_.emplace(schedule_);
-            InverseSweep<Leaf> const sweep{sweeps_, inverse_->own.view(), inverse_->across.view(),
-                                           out.beside};
-            auto const each = [&](auto const& items) { space_.over(std::span(items), sweep); };
-            auto const each_level = [&](auto const& levels) {
-                for (std::size_t l = levels.size(); l-- > 0;) each(levels[l]);
-            };
-            each(schedule_.top_roots);
-            each_level(schedule_.top_levels);
-            each(schedule_.roots);
-            each_level(schedule_.levels);
-            each(schedule_.runs);
-            // Returns the pivot of a joint; its inverse is 0 if nothing is restricted there.
-            auto const pivot = [this](std::int64_t joint) {
-                double const inverse = sweeps_.joints.load(joint).factor(0, 0);
-                return inverse != 0 ? 1 / inverse : 1.0;
-            };
-            space_.for_each(group_.size, [&](std::int64_t k) { out.pivot.at(k, 0) = pivot(k); });
-            for (std::size_t i = 0; i < group_.tips.size(); ++i)
-                out.tip_pivot.at(group_.tips[i].body, 0) =
-                    pivot(schedule_.first_tip() + static_cast<std::int64_t>(i));
+            inverse_->compute(space_, group_, sweeps(), out);
         } else {
             ChainSolver::invert(out);
         }
@@ -162,8 +126,8 @@ class TreeSolver final : public ChainSolver {
     template <class Action>
     void carry(ConfigurationView const& configuration, int matrix_sweeps, int bias_sweeps,
                Action const& action) {
-        sweeps_.leaf.set(configuration);
-        space_.each_block(blocks(), action(sweeps_));
+        sweeps().leaf.set(configuration);
+        space_.each_block(blocks(), action(sweeps()));
         report_.matrix_sweeps += matrix_sweeps;
         report_.bias_sweeps += bias_sweeps;
         if (Space::answers_at_once) check();
@@ -171,10 +135,9 @@ class TreeSolver final : public ChainSolver {
 
     /// Throws if a pivot failure was found, and resets the record of failures.
     void check() override {
-        unsigned long long const bad = space_.get(lost_.data());
-        if (bad == none_lost) return;
-        space_.put(lost_.data(), none_lost);
-        refuse_indefinite(group_, communicator_.rank(), static_cast<std::int64_t>(bad));
+        PivotFailure const found = store_.take_failure(space_);
+        if (!found.none())
+            refuse_indefinite(group_, communicator_.rank(), static_cast<std::int64_t>(found.joint));
     }
     /// Waits until all work of the Space is complete.
     void wait() override { space_.wait(); }
@@ -186,7 +149,7 @@ class TreeSolver final : public ChainSolver {
         SolverReport r = report_;
         add_tree(group_, communicator_, r);
         r.threads = space_.threads();
-        r.direct_exchange = shown_matrices_.is_direct();
+        r.direct_exchange = exchange_.is_direct();
         r.memory_bytes = Sweeps::bytes(schedule_);
         if constexpr (has_lanes)
             if (aside_) {
@@ -197,20 +160,8 @@ class TreeSolver final : public ChainSolver {
     }
 
   private:
-    // Value of `lost_` without a pivot failure.
-    static constexpr unsigned long long none_lost = ~0ULL;
-
-    /// Builds the trees of everything that is not processed side by side: runs, one level after the
-    /// other, and the roots.
-    void lay_out_rest() {
-        auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
-            rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint,
-                               Sweeps::in_stage);
-        };
-        add(aside_->other_runs(), no_levels_, no_roots_);
-        for (LevelDealtOut const& level : aside_->levels()) add(no_runs_, level.others, no_roots_);
-        add(no_runs_, no_levels_, schedule_.roots);
-    }
+    // The arrays of the sweeps, with the configuration set last.
+    Sweeps& sweeps() { return store_.sweeps(); }
     /// Returns the blocks of whole chains; they are made on the first call.
     typename Space::Blocks const& blocks() {
         if (!blocks_) blocks_.emplace(group_);
@@ -221,7 +172,7 @@ class TreeSolver final : public ChainSolver {
     bool assemble_by_teams() {
         if constexpr (Space::template has_teams<K>)
             if (carries() && group_.partition.trees.front().run_length == longest_run) {
-                space_.each_block(blocks(), MatricesOfChains<Leaf>{sweeps_});
+                space_.each_block(blocks(), MatricesOfChains<Leaf>{sweeps()});
                 return true;
             }
         return false;
@@ -230,17 +181,19 @@ class TreeSolver final : public ChainSolver {
     /// One evaluation by the fused sweep.
     void evaluate(ConfigurationView const& configuration, LoadsView const& loads,
                   AccelerationsView const& out) {
-        Stopwatch const watch(*this, report_.matrix_seconds);
-        sweeps_.leaf.set(configuration);
+        SweepTimer const timer(space_, measured_, report_.matrix_seconds);
+        sweeps().leaf.set(configuration);
         if constexpr (Leaf::beads)
             sweep_at_once(
                 FusedSweep<Leaf, typename Leaf::Moving>{
-                    {sweeps_}, {model_.view(), model_.restricted(), configuration, loads}, out},
+                    {sweeps()},
+                    {store_.model().view(), store_.model().restricted(), configuration, loads},
+                    out},
                 configuration, loads, out);
         else
             sweep_at_once(
                 FusedSweep<Leaf, Resting<Leaf>>{
-                    {sweeps_}, {sweeps_.leaf, model_.restricted(), loads}, out},
+                    {sweeps()}, {sweeps().leaf, store_.model().restricted(), loads}, out},
                 configuration, loads, out);
         ++report_.evaluations;
         if (Space::answers_at_once) check();
@@ -253,42 +206,13 @@ class TreeSolver final : public ChainSolver {
                        LoadsView const& loads, AccelerationsView const& out) {
         if constexpr (has_lanes)
             if (aside_) {
-                RunWork<Leaf> work{sweeps_, model_.view(), configuration, loads, out};
-                aside_->climb(space_, work);
-                space_.climb(rest_.front(), sweep);
-                for (std::size_t l = 0; l < aside_->levels().size(); ++l) {
-                    aside_->climb_level(space_, sweeps_, l);
-                    space_.climb(rest_[1 + l], sweep);
-                }
-                up_and_down(rest_.back(), sweep, of_both(), out);
-                for (std::size_t l = aside_->levels().size(); l-- > 0;) {
-                    aside_->descend_level(space_, sweeps_, l);
-                    space_.descend(rest_[1 + l], sweep);
-                }
-                space_.descend(rest_.front(), sweep);
-                return aside_->descend(space_, work);
+                RunWork<Leaf> work{sweeps(), store_.model().view(), configuration, loads, out};
+                return aside_->execute(space_, work, sweep, [&](auto const& roots) {
+                    up_and_down(roots, sweep, exchange_.of_both(sweeps()), out);
+                });
             }
-        up_and_down(whole_runs_ ? *whole_runs_ : tree_, sweep, of_both(), out);
+        up_and_down(whole_runs_ ? *whole_runs_ : tree_, sweep, exchange_.of_both(sweeps()), out);
     }
-
-    /// Adds the seconds of a sweep to the report. If the space does not wait for its work, it does
-    /// so only while measurement is on.
-    class Stopwatch {
-      public:
-        Stopwatch(TreeSolver& solver, double& seconds)
-            : solver_(solver), seconds_(seconds), start_(seconds_now()) {}
-        ~Stopwatch() {
-            if (solver_.measured_) solver_.space_.wait();
-            if (solver_.measured_ || Space::answers_at_once) seconds_ += seconds_now() - start_;
-        }
-        Stopwatch(Stopwatch const&) = delete;
-        Stopwatch& operator=(Stopwatch const&) = delete;
-
-      private:
-        TreeSolver& solver_;
-        double& seconds_;
-        double start_;
-    };
 
     /// Executes the inward and the outward pass with the exchange of the shared units' records
     /// (`shown`) between them. With measurement on, the seconds of the exchange are reported.
@@ -305,81 +229,37 @@ class TreeSolver final : public ChainSolver {
             space_.descend(tree, sweep);
         }
         // The neighbour rank needs the force of the joint between the two ranks' bodies.
-        if (out.joint_force && group_.neighbour_outboard >= 0)
-            space_.for_each(1, ForceOfNextRank<Sweeps>{sweeps_, out.joint_force, schedule_.halo,
+        if (out.joint_force && group_.neighbours.outboard >= 0)
+            space_.for_each(1, ForceOfNextRank<Sweeps>{sweeps(), out.joint_force, schedule_.halo,
                                                        schedule_.bodies});
     }
 
-    // Numbers of a shared unit's record when matrices and biases are exchanged together.
-    using NumbersOfSegments = NumbersOfBoth<typename Sweeps::Matrices, typename Sweeps::Biases>;
-    // Exchange of shared units and the numbers of the records to be exchanged.
-    template <class Numbers>
-    struct Shown {
-        FrontierExchange<Space>& units;
-        Numbers numbers;
-    };
     /// Distributes the records of the shared units to all ranks.
-    template <class Numbers>
-    void gather(Shown<Numbers> const& shown) {
+    template <class Shown>
+    void gather(Shown const& shown) {
         auto const start = seconds_now();
-        shown.units.show(space_, shown.numbers);
-        shown.units.bring(space_, communicator_, shown.numbers);
+        shown.gather(space_, communicator_);
         if (measured_) space_.wait();
         report_.exchange_seconds += seconds_now() - start;
-    }
-    /// Returns the exchange of the matrices of shared units.
-    Shown<RecordNumbers<typename Sweeps::Matrices>> of_matrices() {
-        return {shown_matrices_,
-                {matrices_.view(), shown_matrices_.own_units(), shown_matrices_.units()}};
-    }
-    /// Returns the exchange of the biases of shared units.
-    Shown<RecordNumbers<typename Sweeps::Biases>> of_biases() {
-        return {shown_biases_, {biases_.view(), shown_biases_.own_units(), shown_biases_.units()}};
-    }
-    /// Returns the exchange of matrices and biases together. Precondition: at_once().
-    Shown<NumbersOfSegments> of_both() {
-        return {*shown_both_,
-                {matrices_.view(), biases_.view(), shown_both_->own_units(), shown_both_->units()}};
     }
 
     ChainGroup const& group_;
     Schedule const& schedule_;
     Space space_;
     Communicator const& communicator_;
-    typename Space::Model model_;
-    // Empty lists for trees without runs, merges or roots.
+    SweepStore<Leaf, Space> store_;
+    // Empty list for the top, which has no runs.
     std::vector<Run> no_runs_;
-    std::vector<std::vector<Merge>> no_levels_;
-    std::vector<Root> no_roots_;
     // Tree of the chains' parts on this rank, and the top of shared chains.
     typename Space::Tree tree_, top_;
     // Tree of evaluations that compute runs on revolute joints by articulated-body inertias.
     std::optional<typename Space::Tree> whole_runs_;
-    // Segments, indexed by slot.
-    Records<typename Sweeps::Matrices, Order::plain> matrices_;
-    Records<typename Sweeps::Biases, Order::plain> biases_;
-    // Nodes and states, indexed by joint.
-    Records<typename Sweeps::Joint, Order::by_body> joints_;
-    Records<typename Sweeps::Offset, Order::by_body> offsets_;
-    Records<typename Sweeps::State, Order::by_body> forces_;
-    FrontierExchange<Space> shown_matrices_, shown_biases_;
-    // Exchange of the fused sweep, if evaluations use it.
-    std::optional<FrontierExchange<Space>> shown_both_;
-    // Smallest joint with a pivot failure, or none_lost.
-    typename Space::template Array<unsigned long long> lost_;
-    Sweeps sweeps_;
+    SegmentExchange<Sweeps, Space> exchange_;
     // Made on first use or only if needed: blocks of whole chains, and runs and merges that are
     // processed side by side.
     std::optional<typename Space::Blocks> blocks_;
-    std::optional<SideBySide<Leaf>> aside_;
-    // Trees of everything that is not processed side by side, see lay_out_rest().
-    std::vector<typename Space::Tree> rest_;
-    /// Arrays of InverseSweep; allocated when invert() is called.
-    struct Inverse {
-        explicit Inverse(Schedule const& schedule) : own(schedule.joints), across(schedule.slots) {}
-        Records<double, Order::plain> own, across;
-    };
-    std::optional<Inverse> inverse_;
+    std::optional<SideBySideTree<Leaf, Space>> aside_;
+    std::optional<LinksInverse<Leaf, Space>> inverse_;
     bool measured_ = false;
     SolverReport report_;
 };

@@ -23,7 +23,7 @@ struct EmbeddedSteps {
     CATENA_HD void advance(Place k, EmbeddedStage const& s) const {
         using Real = RealAt<Place>;
         JointChains const& chains = steps.chains;
-        StateView const &state = chains.scan.state, &start = steps.start;
+        StateView const &state = chains.moved.scan.state, &start = steps.start;
         bool const first = s.number == 0, last = s.number == EmbeddedStage::stages - 1;
         if (first && !s.again) {
             write(start.q, k, read(state.q, k));
@@ -40,18 +40,19 @@ struct EmbeddedSteps {
             for (int c = 0; c < 4; ++c) q[c] = fused(weight, rate[c], q[c]);
             for (int c = 0; c < 3; ++c) qd[c] = fused(weight, rate[4 + c], qd[c]);
         }
-        if (last && chains.joints().has_quaternion(k)) q = as_vector(normalized(as_quaternion(q)));
+        if (last && chains.moved.joints().has_quaternion(k))
+            q = as_vector(normalized(as_quaternion(q)));
         write(state.q, k, q);
         write(state.qd, k, qd);
         if constexpr (is_one_body<Place>) {
-            if (chains.on_free_base(k)) advance_base(chains.joints().piece_of(k), k, s);
-            chains.joints().follow_course(state, k, s.time);
+            if (chains.on_free_base(k)) advance_base(chains.moved.joints().piece_of(k), k, s);
+            chains.moved.joints().follow_course(state, k, s.time);
         }
         if (!chains.left.motions) chains.template set_relative<positions>(k);
     }
     /// Counterpart of advance() for the free base of a piece.
     CATENA_HD void advance_base(std::int64_t piece, std::int64_t k, EmbeddedStage const& s) const {
-        StateView const &state = steps.chains.scan.state, &start = steps.start;
+        StateView const &state = steps.chains.moved.scan.state, &start = steps.start;
         bool const first = s.number == 0;
         if (first && !s.again) {
             start.base_position.store(piece, state.base_position.load(piece));
@@ -81,11 +82,11 @@ struct EmbeddedSteps {
     /// the deviation of the quaternion's length from 1, and velocities relative to 1000 rad per
     /// step.
     CATENA_HD double stage_divergence(std::int64_t k, double length) const {
-        StateView const& state = steps.chains.scan.state;
+        StateView const& state = steps.chains.moved.scan.state;
         Vector<double, 4> const q = state.q.load(k);
         Vec3 const qd = state.qd.load(k);
         double const size = dot(q, q), fast = 1e-3 * length * norm(of_kind(k, true, qd));
-        if (!steps.chains.joints().has_quaternion(k))
+        if (!steps.chains.moved.joints().has_quaternion(k))
             return worse(fast, 0.0 * size + 0.0 * norm(qd));
         return worse(fast, worse(0.25 * size, 0.25 / size));
     }
@@ -93,11 +94,11 @@ struct EmbeddedSteps {
     /// the kind.
     CATENA_HD double speed(std::int64_t k, bool angular) const {
         JointChains const& chains = steps.chains;
-        StateView const &state = chains.scan.state, &start = steps.start;
+        StateView const &state = chains.moved.scan.state, &start = steps.start;
         double const fastest = worse(norm(of_kind(k, angular, start.qd.load(k))),
                                      norm(of_kind(k, angular, state.qd.load(k))));
         if (angular || !chains.on_free_base(k)) return fastest;
-        std::int64_t const p = chains.joints().piece_of(k);
+        std::int64_t const p = chains.moved.joints().piece_of(k);
         return worse(norm(start.base_velocity.load(p)), norm(state.base_velocity.load(p)));
     }
     /// Largest difference of the two orders relative to the tolerances. Precondition: the rates at
@@ -106,14 +107,14 @@ struct EmbeddedSteps {
     CATENA_HD double error(std::int64_t k, EmbeddedDifference const& d,
                            AllowedErrors const& allowed) const {
         JointChains const& chains = steps.chains;
-        if (chains.drive_of(k)) return 0;
+        if (chains.moved.drive_of(k)) return 0;
         Vector<double, rates> e = d.weight[EmbeddedStage::stages] * rates_of(k, chains.rate(k));
         for (int i = 0; i < EmbeddedStage::stages; ++i)
             e = plus_scaled(e, d.weight[i], of_stage(i).load(k));
         Vec3 const of_speed{{e[4], e[5], e[6]}};
         Vec3 of_place{{e[0], e[1], e[2]}};
-        if (chains.joints().has_quaternion(k)) {
-            Quat const off = conjugate(as_quaternion(chains.scan.state.q.load(k))) *
+        if (chains.moved.joints().has_quaternion(k)) {
+            Quat const off = conjugate(as_quaternion(chains.moved.scan.state.q.load(k))) *
                              Quat{e[0], e[1], e[2], e[3]};
             of_place = {{2 * off.x, 2 * off.y, 2 * off.z}};
         }
@@ -126,9 +127,9 @@ struct EmbeddedSteps {
     /// Counterpart of error() for a free base.
     CATENA_HD double base_error(std::int64_t k, EmbeddedDifference const& d,
                                 AllowedErrors const& allowed) const {
-        std::int64_t const p = steps.chains.joints().piece_of(k);
+        std::int64_t const p = steps.chains.moved.joints().piece_of(k);
         double const after = d.weight[EmbeddedStage::stages];
-        Vec3 x = after * steps.chains.scan.state.base_velocity.load(p),
+        Vec3 x = after * steps.chains.moved.scan.state.base_velocity.load(p),
              v = after * steps.chains.base_rate(k);
         for (int i = 0; i < EmbeddedStage::stages; ++i) {
             Vector<double, base_rates> const rate = base_of_stage(i).load(p);
@@ -142,7 +143,7 @@ struct EmbeddedSteps {
     /// Numbers of joint k's coordinates that are angles, or lengths unless `angular`; the others
     /// become 0.
     CATENA_HD Vec3 of_kind(std::int64_t k, bool angular, Vec3 const& numbers) const {
-        JointType const type = steps.chains.joints().joint[k];
+        JointType const type = steps.chains.moved.joints().joint[k];
         Vec3 of_it = numbers;
         for (int i = 0; i < 3; ++i)
             if (is_length(type, i) == angular) of_it[i] = 0;
@@ -160,10 +161,10 @@ struct EmbeddedSteps {
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, rates> rates_of(Place k, Vec3At<Place> const& qdd) const {
         using Real = RealAt<Place>;
-        StateView const& state = steps.chains.scan.state;
+        StateView const& state = steps.chains.moved.scan.state;
         Vec3At<Place> const qd = read(state.qd, k);
         Vector<Real, 4> const q =
-            steps.chains.joints().has_quaternion(k)
+            steps.chains.moved.joints().has_quaternion(k)
                 ? JointSteps::rate_of_quaternion(as_quaternion(read(state.q, k)), qd)
                 : Vector<Real, 4>{{qd[0], qd[1], qd[2], Real(0)}};
         return {{q[0], q[1], q[2], q[3], qdd[0], qdd[1], qdd[2]}};

@@ -47,7 +47,7 @@ class JointBodies {
           loads(group, g.given, space, solver.eliminates_revolute_joints(),
                 rotor_of_spring(g.scene.dynamics.integrator), g.implicit_step),
           solution(group, solver.eliminates_revolute_joints()),
-          zero(group.has_tips() ? group.size : 0),
+          zero(group.ends.has_tips() ? group.size : 0),
           pieces_(local_pieces(group, g.scene)),
           pieces(pieces_) {
         if constexpr (has_lanes)
@@ -62,11 +62,11 @@ class JointBodies {
     /// Views of all arrays for loops over bodies.
     JointChains chains() {
         JointChains c;
-        c.scan = motion.scan(state.now.view());
+        c.moved.scan = motion.scan(state.now.view());
         if (loads.implicit) c.implicit = loads.implicit.view(state.start.view().qd);
-        c.time = state.clock.now;
+        c.moved.time = state.clock.now;
         c.directions = group.directions;
-        loads.show(c, motion.kinematics());
+        loads.show(c, motion.kinematics().joints());
         c.alpha = solution.alpha.view();
         c.acceleration = solution.acceleration.view();
         c.outboard_end = solution.outboard_end.view();
@@ -86,8 +86,8 @@ class JointBodies {
     /// Views with zero velocities and gravity, so that rates contain the last solution only.
     JointSteps at_rest() {
         JointSteps still = steps();
-        still.chains.scan.state.qd = zero.view();
-        still.chains.scan.motion.omega = zero.view();
+        still.chains.moved.scan.state.qd = zero.view();
+        still.chains.moved.scan.motion.omega = zero.view();
         still.chains.given.gravity = Vec3::zero();
         return still;
     }
@@ -160,7 +160,7 @@ class JointBodies {
         View<4> const end = c.outboard_end;
         space.exchange(
             communicator,
-            BodyExchange<4>{end, 0, group.neighbour_outboard, end, -1, group.neighbour_inboard},
+            BodyExchange<4>{end, 0, group.neighbours.outboard, end, -1, group.neighbours.inboard},
             [c, last = group.size - 1] CATENA_LAMBDA(std::int64_t) {
                 c.outboard_end.store(0, c.outboard_end_of(last));
             });

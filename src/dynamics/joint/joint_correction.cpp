@@ -31,8 +31,8 @@ double RefinedSolution::relative_change(Communicator const& communicator) const 
     };
     double mass = 0, inertia = 0;
     for (std::int64_t k = 0; k < group.size; ++k) {
-        mass = std::max(mass, group.mass.view().at(k, 0));
-        inertia = std::max(inertia, trace_of(group.inertia[k]) / 3);
+        mass = std::max(mass, group.bodies.mass.view().at(k, 0));
+        inertia = std::max(inertia, trace_of(group.bodies.inertia[k]) / 3);
     }
     mass = communicator.max(mass), inertia = communicator.max(inertia);
     double const by_force = std::max(norm(gravity), ratio(largest(force), mass));

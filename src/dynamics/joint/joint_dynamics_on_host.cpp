@@ -5,7 +5,7 @@ namespace catena {
 
 std::vector<JointedTip> tips_at_start(ChainGroup const& group, Scene const& scene,
                                       Communicator const& communicator) {
-    if (!group.has_tips()) return {};
+    if (!group.ends.has_tips()) return {};
     auto const executor = serial_executor();
     HostSpace const host(*executor);
     JointState start = make_joint_state(group, scene);

@@ -171,8 +171,8 @@ void add_response(JointBodies<Space>& bodies, JointDefect const& defect) {
     add_to(space, group.size, r.acceleration.view(), solution.acceleration.view());
     int const directions = group.directions;
     add_to(space, group.size + 1, r.joint_force.view(), solution.joint_force.view(), directions);
-    add_to(space, group.has_tips() ? group.size : 0, r.tip_force.view(), solution.tip_force.view(),
-           directions);
+    add_to(space, group.ends.has_tips() ? group.size : 0, r.tip_force.view(),
+           solution.tip_force.view(), directions);
     bodies.exchange_ends();
     space.wait();
 }

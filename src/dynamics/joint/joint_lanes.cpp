@@ -11,13 +11,13 @@ namespace {
 /// chain's first or last body, so none is a run by itself.
 bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int lanes) {
     if (k == 0 || k + lanes >= group.size) return false;
-    JointType const type = group.joint[static_cast<std::size_t>(k)];
+    JointType const type = group.joints.type[static_cast<std::size_t>(k)];
     if (numbers_of_joint(type) == 0 || (springs && is_ball(type))) return false;
     for (std::int64_t i = k; i <= k + lanes;
          // Includes the joint after them, whose motion moves their handle 2.
          ++i) {
         auto const at = static_cast<std::size_t>(i);
-        if (group.joint[at] != type || group.is_first[at]) return false;
+        if (group.joints.type[at] != type || group.ends.is_first[at]) return false;
     }
     return true;
 }
@@ -47,8 +47,8 @@ JointLoops loops_of(SimdLevel level, bool positions) {
 }  // namespace
 
 JointLanes::JointLanes(ChainGroup const& group, bool springs, bool revolutes, SimdLevel level) {
-    if (level == SimdLevel::off || !rounds_as_vectors() || !group.drives.empty() ||
-        group.carried_in_scene || !group.implicit_joint.empty())
+    if (level == SimdLevel::off || !rounds_as_vectors() || !group.joints.drives.empty() ||
+        group.carried.in_scene || !group.joints.implicit.empty())
         return;
     for (bool const positions : {false, true})
         loops_[positions ? 1 : 0] = loops_of(level, positions);
@@ -64,13 +64,13 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, bool revolutes, Si
     if (!revolutes) return;
     for (dca::RunsInLanes const& item : runs_.items)
         for (int lane = 0; lane < lanes; ++lane)
-            if (group.is_first[static_cast<std::size_t>(item.body[lane])] &&
+            if (group.ends.is_first[static_cast<std::size_t>(item.body[lane])] &&
                 (lane == 0 || item.body[lane] != item.body[0]))
                 chains_begin_.push_back(item.body[lane]);
     constants_ = dca::constants_in_lanes(runs_.items, lanes, revolute_constants,
                                          [&group](std::int64_t k, double* place) {
-                                             auto const axes = group.axes1[k];
-                                             auto const rotation = group.joint_rotation[k];
+                                             auto const axes = group.bodies.axes1[k];
+                                             auto const rotation = group.joints.rotation[k];
                                              for (int i = 0; i < 3; ++i) *place++ = axes[3 + i];
                                              for (int i = 0; i < 4; ++i) *place++ = rotation[i];
                                          });

@@ -33,7 +33,7 @@ class EliminatedJoints {
         std::vector<std::uint8_t> in_run(static_cast<std::size_t>(group.size), 0);
         for (dca::Run const& run : group.schedule.runs)
             for (std::int64_t k = run.body; run.count > 1 && k < run.body + run.count; ++k)
-                if (group.is_first[static_cast<std::size_t>(k)] == 0)
+                if (group.ends.is_first[static_cast<std::size_t>(k)] == 0)
                     in_run[static_cast<std::size_t>(k)] =
                         k == run.body ? RevolutesInRuns::first : RevolutesInRuns::within;
         return in_run;
@@ -50,10 +50,10 @@ class ImplicitJointsIn {
   public:
     /// `step`: step length h. `rotor`: rotor_of_spring() of the integrator.
     ImplicitJointsIn(ChainGroup const& group, double rotor, double step)
-        : any_(!group.implicit_joint.empty()),
+        : any_(!group.joints.implicit.empty()),
           of_stiffness_(rotor * step * step),
           of_damping_(0.5 * step),
-          list_(group.implicit_joint),
+          list_(group.joints.implicit),
           compliance_(any_ ? group.size : 0),
           yielding_(any_ ? group.size : 0) {}
 
@@ -83,10 +83,10 @@ struct JointLoadsIn {
                  bool eliminates, double rotor, double implicit_step)
         : given(loads),
           in_space(loads),
-          has_wrenches(loads.wrenches || group.carried_beads() > 0),
+          has_wrenches(loads.wrenches || group.carried.count() > 0),
           has_forces(has_wrenches || loads.act_on_bodies() ||
-                     (loads.joint_loads && group.has_screws)),
-          carried(group.carried_in_scene),
+                     (loads.joint_loads && group.joints.has_screws)),
+          carried(group.carried.in_scene),
           eliminated(group, eliminates),
           implicit(group, rotor, implicit_step),
           beads(group, space),
@@ -114,11 +114,11 @@ struct JointLoadsIn {
                                  : BodyExchange<4>::none();
     }
     /// Sets the views of the bodies and their loads.
-    void show(JointLoads& c, JointKinematics<Space> const& kinematics) {
-        c.mass = kinematics.model().mass();
-        c.inertia = kinematics.model().inertia();
-        c.fixed_r2 = kinematics.bodies().r2;
-        c.fixed_axes2 = kinematics.bodies().axes2;
+    void show(JointLoads& c, JointsIn<Space> const& joints) {
+        c.mass = joints.model().mass();
+        c.inertia = joints.model().inertia();
+        c.moved.fixed_r2 = joints.bodies().r2;
+        c.moved.fixed_axes2 = joints.bodies().axes2;
         c.given = in_space.view();
         c.has_wrenches = has_wrenches;
         c.has_forces = has_forces;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dynamics/joint/joint_evaluation.hpp"
+#include "dynamics/joint/joint_noise.hpp"
 
 namespace catena::joint_coordinates {
 
@@ -68,12 +69,12 @@ void thermalise(JointBodies<Space>& bodies, Thermostat const& thermostat, std::u
     typename Space::template FieldOf<3>& force = bodies.force_of_noise();
     JointChains noisy = bodies.chains();
     noisy.force = force.view();
-    bodies.space.for_each(group.size,
-                          [noisy, piece = bodies.pieces.data(), pieces = std::ssize(group.pieces),
-                           seed = thermostat.seed, step] CATENA_LAMBDA(std::int64_t k) {
-                              noisy.set_noise(k, piece_of(piece, pieces, k).body_of(k), seed, step);
-                          });
-    if (group.has_tips()) bodies.tips.set_no_bias(bodies.motion.view());
+    bodies.space.for_each(
+        group.size, [noisy, piece = bodies.pieces.data(), pieces = std::ssize(group.pieces),
+                     seed = thermostat.seed, step] CATENA_LAMBDA(std::int64_t k) {
+            set_noise(noisy, k, piece_of(piece, pieces, k).body_of(k), seed, step);
+        });
+    if (group.ends.has_tips()) bodies.tips.set_no_bias(bodies.motion.view());
     bodies.solver.solve({bodies.loads.torque.view(),
                          force.view(),
                          {},

@@ -45,14 +45,15 @@ Vec3 sum_of(std::span<Vec3 const> terms) {
 
 /// Radius of gyration of body k.
 double radius_of(ChainGroup const& group, std::int64_t k) {
-    return radius_of_gyration(as_symmetric(group.inertia[k]), group.mass.view().at(k, 0));
+    return radius_of_gyration(as_symmetric(group.bodies.inertia[k]),
+                              group.bodies.mass.view().at(k, 0));
 }
 
 }  // namespace
 
 JointSolution::Pair JointSolution::outboard_pair(std::int64_t k) const {
-    if (group.has_jointed_tip(k)) return along_axes(tip_force, k, outboard_screw(k));
-    if (group.is_last[k]) return {Vec3::zero(), Vec3::zero()};
+    if (group.ends.has_jointed_tip(k)) return along_axes(tip_force, k, outboard_screw(k));
+    if (group.ends.is_last[k]) return {Vec3::zero(), Vec3::zero()};
     return along_axes(joint_force, k + 1, outboard_screw(k));
 }
 
@@ -61,9 +62,9 @@ JointSolution::Terms JointSolution::terms(std::int64_t k) const {
     Pair const inboard = along_axes(joint_force, k, screw(k)), outboard = outboard_pair(k);
     Vec3 const force1 = e1 * inboard.force, force2 = -(e2 * outboard.force);
     return {{{force.origin ? force.load(k) : Vec3::zero(), force1, force2}},
-            {{torque.load(k), cross(group.r1[k], force1), e1 * inboard.torque, cross(r2(k), force2),
-              -(e2 * outboard.torque)}},
-            norm(group.r1[k]) * norm(force1) + norm(r2(k)) * norm(force2)};
+            {{torque.load(k), cross(group.bodies.r1[k], force1), e1 * inboard.torque,
+              cross(r2(k), force2), -(e2 * outboard.torque)}},
+            norm(group.bodies.r1[k]) * norm(force1) + norm(r2(k)) * norm(force2)};
 }
 
 /// Acceleration of a handle along its joint's axes (linear, angular), and the sizes of its terms
@@ -73,9 +74,9 @@ Vector<double, 8> JointSolution::handle(std::int64_t k, Vec3 const& r, Mat3 cons
     Terms const t = terms(k);
     Vec3 const w = omega.load(k), centripetal = cross(w, cross(w, r));
     double linear = norm(centripetal) + norm(given.gravity), angular = 0;
-    for (Vec3 const& f : t.forces) linear += group.inverse_mass.view().at(k, 0) * norm(f);
+    for (Vec3 const& f : t.forces) linear += group.bodies.inverse_mass.view().at(k, 0) * norm(f);
     for (Vec3 const& m : t.moments) {
-        Vec3 const part = as_symmetric(group.inverse_inertia[k]) * m;
+        Vec3 const part = as_symmetric(group.bodies.inverse_inertia[k]) * m;
         angular += norm(part);
         linear += norm(cross(part, r));
     }
@@ -93,7 +94,7 @@ JointSolution::Terms JointSolution::terms_solved_for(std::int64_t k) const {
     return t;
 }
 Vec3 JointSolution::inertial_moment(std::int64_t k) const {
-    Vec3 const moment = as_symmetric(group.inertia[k]) * alpha.load(k);
+    Vec3 const moment = as_symmetric(group.bodies.inertia[k]) * alpha.load(k);
     if (!group.planar) return moment;
     Vec3 const axis = axes1(k).column(2);
     return dot(axis, moment) * axis;
@@ -101,20 +102,21 @@ Vec3 JointSolution::inertial_moment(std::int64_t k) const {
 
 Vector<double, 8> JointSolution::handle_before_first(Communicator const& communicator) const {
     Vector<double, 8> before = Vector<double, 8>::zero();
-    if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return before;
+    if (group.neighbours.inboard < 0 && group.neighbours.outboard < 0) return before;
     Vector<double, 8> const last =
-        group.neighbour_outboard >= 0
+        group.neighbours.outboard >= 0
             ? handle(group.size - 1, r2(group.size - 1), axes2(group.size - 1))
             : before;
-    exchange(communicator, last.data, group.neighbour_outboard, before.data,
-             group.neighbour_inboard);
+    exchange(communicator, last.data, group.neighbours.outboard, before.data,
+             group.neighbours.inboard);
     return before;
 }
 
 std::vector<Vector<double, 8>> JointSolution::handles_at_tips(
     Communicator const& communicator) const {
-    return beyond_tips_of<8>(group, communicator,
-                             [&](std::int64_t k) { return handle(k, group.r1[k], axes1(k)); });
+    return beyond_tips_of<8>(group, communicator, [&](std::int64_t k) {
+        return handle(k, group.bodies.r1[k], axes1(k));
+    });
 }
 
 /// D^T (outboard - inboard) + bias; 0 along directions that are not restricted.
@@ -129,7 +131,7 @@ Vector<double, 6> JointSolution::opening(Vector<double, 8> const& out, Vector<do
 }
 
 Vec3 JointSolution::yielded(std::int64_t k) const {
-    if (!group.is_implicit(k)) return Vec3::zero();
+    if (!group.joints.is_implicit(k)) return Vec3::zero();
     Vector<double, 6> const f = load_first(joint_force, k, group.directions);
     return as_symmetric(compliance.load(k)) * Vec3{{f[3], f[4], f[5]}};
 }
@@ -153,7 +155,7 @@ double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> co
 
 Vector<double, 8> JointSolution::handle_before(std::int64_t k,
                                                Vector<double, 8> const& before_first) const {
-    if (group.is_first[k]) return Vector<double, 8>::zero();
+    if (group.ends.is_first[k]) return Vector<double, 8>::zero();
     return k == 0 ? before_first : handle(k - 1, r2(k - 1), axes2(k - 1));
 }
 
@@ -165,18 +167,19 @@ double JointSolution::residual(Communicator const& communicator, Executor const&
         Terms const t = terms_solved_for(k);
         // The acceleration of the ground replaces the weight of bodies. In free fall, therefore,
         // only the rounding of the weight is left in the terms.
-        double const mass = group.mass.view().at(k, 0), weight = mass * norm(given.gravity);
+        double const mass = group.bodies.mass.view().at(k, 0), weight = mass * norm(given.gravity);
         worst = larger(worst, balance(mass * acceleration.load(k), t.forces, weight));
         worst = larger(worst, balance(inertial_moment(k), t.moments,
-                                      t.moment_sizes + weight * norm(group.r1[k])));
-        double const size = norm(group.r1[k]) + radius_of(group, k);
+                                      t.moment_sizes + weight * norm(group.bodies.r1[k])));
+        double const size = norm(group.bodies.r1[k]) + radius_of(group, k);
         Vector<double, 8> const before = handle_before(k, before_first);
-        worst = larger(worst, closing(handle(k, group.r1[k], axes1(k)), before, bias, k, screw(k),
-                                      group.restricted(k), size, yielded(k)));
-        if (!group.has_jointed_tip(k)) return worst;
-        return larger(worst, closing(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)),
-                                     tip_bias, k, outboard_screw(k), group.tip_of(k).restricted,
-                                     norm(r2(k)) + radius_of(group, k), Vec3::zero()));
+        worst = larger(worst, closing(handle(k, group.bodies.r1[k], axes1(k)), before, bias, k,
+                                      screw(k), group.restricted(k), size, yielded(k)));
+        if (!group.ends.has_jointed_tip(k)) return worst;
+        return larger(
+            worst, closing(at_tips[group.ends.tip_index(k)], handle(k, r2(k), axes2(k)), tip_bias,
+                           k, outboard_screw(k), group.ends.tip_of(k).restricted,
+                           norm(r2(k)) + radius_of(group, k), Vec3::zero()));
     };
     double worst = 0;
     std::mutex one_at_a_time;
@@ -191,7 +194,7 @@ double JointSolution::residual(Communicator const& communicator, Executor const&
 
 JointDefect JointSolution::defect(Communicator const& communicator,
                                   Executor const& executor) const {
-    std::int64_t const tips = group.has_tips() ? group.size : 0;
+    std::int64_t const tips = group.ends.has_tips() ? group.size : 0;
     JointDefect d{Field<3>(group.size), Field<3>(group.size),
                   DirectionsField(group.size + 1, group.directions),
                   DirectionsField(tips, group.directions)};
@@ -200,15 +203,15 @@ JointDefect JointSolution::defect(Communicator const& communicator,
     executor.for_each(group.size, [&](std::int64_t k) {
         Terms const t = terms_solved_for(k);
         d.torque.set(k, sum_of(t.moments) - inertial_moment(k));
-        d.force.set(k, sum_of(t.forces) - group.mass.view().at(k, 0) * acceleration.load(k));
+        d.force.set(k, sum_of(t.forces) - group.bodies.mass.view().at(k, 0) * acceleration.load(k));
         store_first(d.bias.view(), k, group.directions,
-                    opening(handle(k, group.r1[k], axes1(k)), handle_before(k, before_first),
+                    opening(handle(k, group.bodies.r1[k], axes1(k)), handle_before(k, before_first),
                             load_first(bias, k, group.directions), screw(k), group.restricted(k)));
-        if (group.has_jointed_tip(k))
+        if (group.ends.has_jointed_tip(k))
             store_first(d.tip_bias.view(), k, group.directions,
-                        opening(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)),
+                        opening(at_tips[group.ends.tip_index(k)], handle(k, r2(k), axes2(k)),
                                 load_first(tip_bias, k, group.directions), outboard_screw(k),
-                                group.tip_of(k).restricted));
+                                group.ends.tip_of(k).restricted));
     });
     return d;
 }

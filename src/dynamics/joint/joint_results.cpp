@@ -7,15 +7,15 @@
 namespace catena {
 
 Screw<double> JointSolution::screw(std::int64_t k) const {
-    if (!group.has_screws) return {1, 0};
-    return dca::as_screw(group.screw.view().load(k));
+    if (!group.joints.has_screws) return {1, 0};
+    return dca::as_screw(group.joints.screw.view().load(k));
 }
 
 Screw<double> JointSolution::outboard_screw(std::int64_t k) const {
-    if (!group.has_jointed_tip(k))
-        return k + 1 < group.size || group.neighbour_outboard >= 0 ? screw(k + 1)
-                                                                   : Screw<double>{1, 0};
-    return dca::as_screw(group.tip_of(k).screw);
+    if (!group.ends.has_jointed_tip(k))
+        return k + 1 < group.size || group.neighbours.outboard >= 0 ? screw(k + 1)
+                                                                    : Screw<double>{1, 0};
+    return dca::as_screw(group.ends.tip_of(k).screw);
 }
 
 JointSolution::Pair JointSolution::along_axes(ConstDirectionsView forces, std::int64_t at,
@@ -28,7 +28,7 @@ JointSolution::Pair JointSolution::along_axes(ConstDirectionsView forces, std::i
 Vec3 JointSolution::outside_force(std::int64_t k) const {
     Vec3 f = Vec3::zero();
     if (bead_force.origin)
-        for (std::int64_t i = group.bead_offset[k]; i < group.bead_offset[k + 1]; ++i)
+        for (std::int64_t i = group.carried.offset[k]; i < group.carried.offset[k + 1]; ++i)
             f = f + bead_force.load(i);
     return given.wrenches ? f + given.wrench_force[k] : f;
 }
@@ -40,7 +40,7 @@ struct SolvedBodies {
 
     Vec3 omega(std::int64_t k) const { return of.omega.load(k); }
     Vec3 velocity(std::int64_t k) const { return of.velocity.load(k); }
-    Vec3 r1(std::int64_t k) const { return of.group.r1[k]; }
+    Vec3 r1(std::int64_t k) const { return of.group.bodies.r1[k]; }
     template <int D>
     Vector<double, D> load(Field<D> const& field, std::int64_t k) const {
         return field[k];
@@ -69,13 +69,13 @@ BodyResults JointSolution::results(Communicator const& communicator) const {
         r.joint_force.push_back({{t[0], t[1], t[2], v[0], v[1], v[2]}});
     }
     if (group.planar) add_across_plane(communicator, r);
-    for (LocalTip const& tip : group.tips) {
+    for (LocalTip const& tip : group.ends.tips) {
         Pair const found = along_axes(tip_force, tip.body, dca::as_screw(tip.screw));
         Mat3 const to_ground = orientation(tip.body) * axes2(tip.body);
         Vec3 const push = -(to_ground * found.force);
         // The handles coincide at the origin of G, which slides along the joint's axis.
-        Vec3 const arm =
-            orientation(tip.body) * (r2(tip.body) - group.r1[tip.body] - tip.joint.translation);
+        Vec3 const arm = orientation(tip.body) *
+                         (r2(tip.body) - group.bodies.r1[tip.body] - tip.joint.translation);
         Vec3 const moment = cross(arm, push) - to_ground * found.torque;
         r.tip_force.push_back({group.scene_chain(tip.body),
                                {{moment[0], moment[1], moment[2], push[0], push[1], push[2]}}});
@@ -91,21 +91,22 @@ void JointSolution::add_across_plane(Communicator const& communicator, BodyResul
     for (std::int64_t k = 0; k < group.size; ++k) {
         Mat3 const to_ground = orientation(k);
         Vec3 const needed_force =
-            group.mass.view().at(k, 0) *
+            group.bodies.mass.view().at(k, 0) *
                 (r.acceleration[static_cast<std::size_t>(k)] - given.gravity) -
             outside_force(k) - to_ground * force_of_terms(k);
-        Vec3 const moment = to_ground * (as_symmetric(group.inertia[k]) * alpha.load(k) +
+        Vec3 const moment = to_ground * (as_symmetric(group.bodies.inertia[k]) * alpha.load(k) +
                                          gyroscopic_torque(k) - torque.load(k));
-        Vec3 const to_next =
-            group.is_last[k] ? Vec3::zero() : to_ground * (group.r2[k] - group.r1[k]);
+        Vec3 const to_next = group.ends.is_last[k]
+                                 ? Vec3::zero()
+                                 : to_ground * (group.bodies.r2[k] - group.bodies.r1[k]);
         needed.push_back(
-            {needed_force, moment + cross(to_ground * -group.r1[k], needed_force), to_next});
+            {needed_force, moment + cross(to_ground * -group.bodies.r1[k], needed_force), to_next});
     }
     auto const sums = sums_from_tip(group, communicator, needed);
     for (dca::Piece const& piece : group.pieces) {
         if (group.partition.has_jointed_tip(piece.chain)) continue;
         for (std::int64_t k = piece.local; k < piece.local + piece.count; ++k) {
-            Vec3 const axis = orientation(k) * axes_of(group.axes1[k]).column(2);
+            Vec3 const axis = orientation(k) * axes_of(group.bodies.axes1[k]).column(2);
             auto const& [needed_force, needed_torque] = sums[k];
             Vec3 const along = dot(axis, needed_force) * axis,
                        across = plus_scaled(needed_torque, -dot(axis, needed_torque), axis);
@@ -121,9 +122,9 @@ PotentialEnergy potential_of(ChainGroup const& group, BodyLoads const& given, Fi
                              BodyMotion const& motion) {
     return potential_of(given, group.size, [&](std::int64_t k) {
         Vec3 const com =
-            motion.origin[k] - to_matrix(as_quaternion(motion.orientation[k])) * group.r1[k];
-        return terms::PlacedBody{k, group.mass.view().at(k, 0), com,
-                                 group.joint[static_cast<std::size_t>(k)], q[k]};
+            motion.origin[k] - to_matrix(as_quaternion(motion.orientation[k])) * group.bodies.r1[k];
+        return terms::PlacedBody{k, group.bodies.mass.view().at(k, 0), com,
+                                 group.joints.type[static_cast<std::size_t>(k)], q[k]};
     });
 }
 

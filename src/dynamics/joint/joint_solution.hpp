@@ -23,7 +23,7 @@ struct JointSolution {
     /// Fields of MotionView.
     ConstView<3> omega, velocity, moving_r2;
     ConstView<6> moving_axes2;
-    /// Fields of JointLoads. `force` has no origin if no body has a force.
+    /// Fields of JointChains. `force` has no origin if no body has a force.
     ConstView<3> torque, force, alpha, acceleration;
     /// Forces on carried beads, W.
     ConstView<3> bead_force;
@@ -47,22 +47,23 @@ struct JointSolution {
     Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(rotation.load(k))); }
     /// Axes of the outboard joint, B.
     Mat3 axes2(std::int64_t k) const {
-        return axes_of(group.moving_meeting() ? moving_axes2.load(k) : group.axes2[k]);
+        return axes_of(group.joints.moving_meeting() ? moving_axes2.load(k)
+                                                     : group.bodies.axes2[k]);
     }
     Vec3 r2(std::int64_t k) const {
-        return group.moving_meeting() ? moving_r2.load(k) : group.r2[k];
+        return group.joints.moving_meeting() ? moving_r2.load(k) : group.bodies.r2[k];
     }
     /// Axes of the inboard joint, B.
     Mat3 axes1(std::int64_t k) const {
         return transposed_times(to_matrix(as_quaternion(joint_turn.load(k))),
-                                axes_of(group.axes1[k]));
+                                axes_of(group.bodies.axes1[k]));
     }
     /// Screw of the inboard joint of body k.
     Screw<double> screw(std::int64_t k) const;
     /// Screw of the outboard joint or the tip's joint of body k.
     Screw<double> outboard_screw(std::int64_t k) const;
     Vec3 gyroscopic_torque(std::int64_t k) const {
-        return cross(omega.load(k), as_symmetric(group.inertia[k]) * omega.load(k));
+        return cross(omega.load(k), as_symmetric(group.bodies.inertia[k]) * omega.load(k));
     }
     /// External force on body k, W.
     Vec3 outside_force(std::int64_t k) const;

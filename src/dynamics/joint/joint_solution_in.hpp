@@ -21,7 +21,7 @@ enum class MatricesHeld : std::uint8_t { none, assembled };
 template <class Space>
 struct JointRefinement {
     explicit JointRefinement(ChainGroup const& group)
-        : JointRefinement(group.size, group.has_tips() ? group.size : 0, group.directions) {}
+        : JointRefinement(group.size, group.ends.has_tips() ? group.size : 0, group.directions) {}
 
     LoadsView loads(ChainGroup const& group) {
         return {torque.view(), force.view(), {}, bias.view(), of_tips(group, tip_bias)};
@@ -59,7 +59,7 @@ struct JointSolutionIn {
           acceleration(group.size),
           outboard_end(1),
           joint_force(group.size + 1, group.directions),
-          tip_force(group.has_tips() ? group.size : 0, group.directions) {}
+          tip_force(group.ends.has_tips() ? group.size : 0, group.directions) {}
 
     /// Output arrays of a full solution.
     AccelerationsView all() {
@@ -90,7 +90,7 @@ struct JointSolutionIn {
     MatricesHeld matrices = MatricesHeld::none;
     FieldOf<2> revolute_acceleration;
     FieldOf<3> alpha, acceleration;
-    /// JointLoads::outboard_end of the body before this rank's first one.
+    /// JointChains::outboard_end of the body before this rank's first one.
     FieldOf<4> outboard_end;
     typename Space::Directions joint_force, tip_force;
     std::optional<JointRefinement<Space>> refinement;

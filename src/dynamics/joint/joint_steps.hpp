@@ -35,8 +35,8 @@ struct JointSteps {
     CATENA_HD void accumulate(Place k, WeightedStage const& s) const {
         using Real = RealAt<Place>;
         using Coordinates = Vector<Real, 4>;
-        StateView const& state = chains.scan.state;
-        JointsView const& joints = chains.joints();
+        StateView const& state = chains.moved.scan.state;
+        JointsView const& joints = chains.moved.joints();
         Real const weight(s.weight), next(s.next);
         Vec3At<Place> const qdd = chains.rate(k), qd = read(state.qd, k);
         Coordinates const q = read(state.q, k);
@@ -68,7 +68,7 @@ struct JointSteps {
     /// The same for the free base of a piece.
     CATENA_HD void accumulate_base(std::int64_t piece, Vec3 const& acceleration,
                                    WeightedStage const& s) const {
-        StateView const& state = chains.scan.state;
+        StateView const& state = chains.moved.scan.state;
         Vec3 const x = state.base_position.load(piece), v = state.base_velocity.load(piece);
         Vec3 const total = plus_scaled(s.first ? x : sum.base_position.load(piece), s.weight, v);
         Vec3 const total_rate =
@@ -94,75 +94,75 @@ struct JointSteps {
     /// Prescribed motions are set to `time`.
     template <bool positions>
     CATENA_HD void drift_saved(std::int64_t k, double h, double time) const {
-        StateView const& state = chains.scan.state;
+        StateView const& state = chains.moved.scan.state;
         Vec3 const qd = state.qd.load(k), qdd = saved.qdd.load(k);
         turn_by(k, plus_scaled(h * qd, 0.5 * h * h, qdd), true);
         start.qd.store(k, qd);
         state.qd.store(k, plus_scaled(qd, h, qdd));
         if (chains.on_free_base(k)) {
-            std::int64_t const p = chains.joints().piece_of(k);
+            std::int64_t const p = chains.moved.joints().piece_of(k);
             Vec3 const v = state.base_velocity.load(p), a = saved.base_acceleration.load(p);
             state.base_position.store(
                 p, state.base_position.load(p) + plus_scaled(h * v, 0.5 * h * h, a));
             start.base_velocity.store(p, v);
             state.base_velocity.store(p, plus_scaled(v, h, a));
         }
-        chains.joints().follow_course(state, k, time);
+        chains.moved.joints().follow_course(state, k, time);
         if (!chains.left.motions) chains.set_relative<positions>(k);
     }
     /// Kick by the mean of the saved accelerations and those at the current state, which it saves.
     CATENA_HD void kick_mean(std::int64_t k, double h) const {
-        StateView const& state = chains.scan.state;
+        StateView const& state = chains.moved.scan.state;
         Vec3 const qdd = chains.rate(k);  // Computed with the guess of qd.
         state.qd.store(k, plus_scaled(plus_scaled(start.qd.load(k), 0.5 * h, saved.qdd.load(k)),
                                       0.5 * h, qdd));
         saved.qdd.store(k, qdd);
         if (chains.on_free_base(k)) {
-            std::int64_t const p = chains.joints().piece_of(k);
+            std::int64_t const p = chains.moved.joints().piece_of(k);
             Vec3 const a = chains.base_rate(k), before = saved.base_acceleration.load(p);
             state.base_velocity.store(
                 p,
                 plus_scaled(plus_scaled(start.base_velocity.load(p), 0.5 * h, before), 0.5 * h, a));
             saved.base_acceleration.store(p, a);
         }
-        chains.joints().follow_course(state, k, chains.time);
+        chains.moved.joints().follow_course(state, k, chains.moved.time);
     }
 
     /// Drift: advances coordinates by h at the current velocities, which are kept. Prescribed
     /// motions are set to `time`.
     template <bool positions>
     CATENA_HD void drift(std::int64_t k, double h, double time) const {
-        StateView const& state = chains.scan.state;
+        StateView const& state = chains.moved.scan.state;
         Vec3 const qd = state.qd.load(k);
         turn_by(k, h * qd, true);
         start.qd.store(k, qd);
         if (chains.on_free_base(k)) {
-            std::int64_t const p = chains.joints().piece_of(k);
+            std::int64_t const p = chains.moved.joints().piece_of(k);
             Vec3 const v = state.base_velocity.load(p);
             state.base_position.store(p, plus_scaled(state.base_position.load(p), h, v));
             start.base_velocity.store(p, v);
         }
-        chains.joints().follow_course(state, k, time);
+        chains.moved.joints().follow_course(state, k, time);
         chains.set_relative<positions>(k);
     }
     /// Kick: the velocities kept by drift() plus h times the last solved rates; or, if
     /// `by_saved`, the current velocities plus h times the saved rates.
     CATENA_HD void kick(std::int64_t k, double h, bool by_saved) const {
-        StateView const& state = chains.scan.state;
+        StateView const& state = chains.moved.scan.state;
         StateView const& from = by_saved ? state : start;
         state.qd.store(
             k, plus_scaled(from.qd.load(k), h, by_saved ? saved.qdd.load(k) : chains.rate(k)));
         if (chains.on_free_base(k)) {
-            std::int64_t const p = chains.joints().piece_of(k);
+            std::int64_t const p = chains.moved.joints().piece_of(k);
             Vec3 const a = by_saved ? saved.base_acceleration.load(p) : chains.base_rate(k);
             state.base_velocity.store(p, plus_scaled(from.base_velocity.load(p), h, a));
         }
-        chains.joints().follow_course(state, k, chains.time);
+        chains.moved.joints().follow_course(state, k, chains.moved.time);
     }
     /// Thermostat: mixes velocities with the solver's response to random loads. `chains` must have
     /// zero velocities and gravity, while `state` is the real state.
     CATENA_HD void mix(std::int64_t k, StateView const& state, double keep, double spread) const {
-        JointsView const& joints = chains.joints();
+        JointsView const& joints = chains.moved.joints();
         if (!(joints.drives > 0 && joints.drive_of(k)))
             state.qd.store(k, plus_scaled(keep * state.qd.load(k), spread, chains.rate(k)));
         if (!chains.on_free_base(k)) return;
@@ -174,7 +174,7 @@ struct JointSteps {
     /// Correction that closes tips: adds the solver's response to the coordinates or, if
     /// `velocities`, to the velocities. `chains` must have zero velocities and gravity.
     CATENA_HD void correct(std::int64_t k, StateView const& state, bool velocities) const {
-        JointsView const& joints = chains.joints();
+        JointsView const& joints = chains.moved.joints();
         Vec3 const by = joints.drives > 0 && joints.drive_of(k) ? Vec3::zero() : chains.rate(k);
         if (velocities)
             state.qd.store(k, state.qd.load(k) + by);
@@ -188,9 +188,9 @@ struct JointSteps {
     /// Adds an increment to the coordinates of body k. `alone`: the component of q that is no
     /// coordinate becomes 0.
     CATENA_HD void turn_by(std::int64_t k, Vec3 const& by, bool alone) const {
-        View<4> const& to = chains.scan.state.q;
+        View<4> const& to = chains.moved.scan.state.q;
         Vector<double, 4> const q = to.load(k);
-        if (chains.joints().has_quaternion(k))
+        if (chains.moved.joints().has_quaternion(k))
             to.store(k, as_vector(normalized(as_quaternion(q) * from_rotation_vector(by))));
         else
             to.store(k, Vector<double, 4>{
@@ -198,7 +198,7 @@ struct JointSteps {
     }
     /// Returns 0, or NaN if the state of body k is not finite.
     CATENA_HD double trouble(std::int64_t k) const {
-        StateView const& state = chains.scan.state;
+        StateView const& state = chains.moved.scan.state;
         return 0.0 *
                (dot(state.q.load(k), state.q.load(k)) + dot(state.qd.load(k), state.qd.load(k)));
     }

@@ -17,8 +17,8 @@ template <class Space>
 bool follows_revolutes(JointBodies<Space> const& bodies) {
     if constexpr (JointBodies<Space>::has_lanes)
         if (bodies.space.simd() != SimdLevel::off && !rounds_as_vectors()) return false;
-    return bodies.loads.eliminated && bodies.group.drives.empty() && !bodies.loads.implicit &&
-           (bodies.lanes || !bodies.solver.has_runs_side_by_side());
+    return bodies.loads.eliminated && bodies.group.joints.drives.empty() &&
+           !bodies.loads.implicit && (bodies.lanes || !bodies.solver.has_runs_side_by_side());
 }
 
 /// Computes motion and loads of all bodies. `again`: keeps the forces on carried beads.
@@ -26,7 +26,7 @@ template <bool positions, class Space>
 void update_all(JointBodies<Space>& bodies, bool again) {
     ChainGroup const& group = bodies.group;
     JointChains c = bodies.chains();
-    c.scan.motion.orients_first_alone = !bodies.motion.needs_orientations();
+    c.moved.scan.motion.orients_first_alone = !bodies.motion.needs_orientations();
     if (!bodies.motion.begin_scan())
         bodies.template each_body<positions>(
             [&c](JointLoops const& loops, auto... lanes) { loops.set_relative(c, lanes...); },
@@ -38,18 +38,18 @@ void update_all(JointBodies<Space>& bodies, bool again) {
     JointKinematics<Space>& kinematics = bodies.motion.kinematics();
     if constexpr (JointBodies<Space>::has_lanes) {
         if (bodies.lanes) {
-            bodies.lanes->follow(bodies.space, positions, c.scan);
-            kinematics.template sweep<positions>(c.scan, bodies.lanes->tree(), shown);
+            bodies.lanes->follow(bodies.space, positions, c.moved.scan);
+            kinematics.template sweep<positions>(c.moved.scan, bodies.lanes->tree(), shown);
         } else {
-            kinematics.template sweep<positions>(c.scan, shown);
+            kinematics.template sweep<positions>(c.moved.scan, shown);
         }
         bodies.template each_body<positions>(
             [&c](JointLoops const& loops, auto... lanes) { loops.set_motion(c, lanes...); },
             set_motion);
     } else {
-        kinematics.template sweep<positions>(c.scan, shown, set_motion);
+        kinematics.template sweep<positions>(c.moved.scan, shown, set_motion);
     }
-    if (!group.has_tips()) return;
+    if (!group.ends.has_tips()) return;
     bodies.tips.set_ends(bodies.motion.view());
     bodies.tips.set_acceleration_bias(bodies.motion.view(), bodies.loads.given.gravity);
 }
@@ -80,7 +80,7 @@ void follow_by_lanes(JointBodies<Space>& bodies, JointChains const& c) {
     space.over(lanes.chains_begin(), [c](std::int64_t k) { c.template set_relative<false>(k); });
     lanes.follow_revolutes(space, c);
     bodies.motion.kinematics().sweep_with(scan, lanes.tree(), bodies.loads.shown(bodies.group));
-    lanes.begin_runs(space, c.scan);
+    lanes.begin_runs(space, c.moved.scan);
     space.over(lanes.chains_begin(),
                [c](std::int64_t k) { c.template set_motion<false>(k, false); });
     space.over(lanes.other_runs(), [scan](dca::Run const& run) { scan.begin(run); });
@@ -91,7 +91,7 @@ void follow_revolutes(JointBodies<Space>& bodies) {
     bodies.loads.left = LoadsLeft::motions;
     bool const relative = bodies.motion.begin_scan_of_runs();
     JointChains c = bodies.chains();
-    c.scan.motion.orients_first_alone = !bodies.motion.needs_orientations();
+    c.moved.scan.motion.orients_first_alone = !bodies.motion.needs_orientations();
     if constexpr (JointBodies<Space>::has_lanes)
         if (bodies.solver.has_runs_side_by_side()) return follow_by_lanes(bodies, c);
     follow_by_runs(bodies, c, relative);
@@ -107,7 +107,7 @@ void find_rotations(JointBodies<Space>& bodies) {
 template <class Space>
 void move(JointBodies<Space>& bodies) {
     bodies.motion.move(bodies.state.now.view());
-    if (bodies.group.has_tips()) bodies.tips.set_ends(bodies.motion.view());
+    if (bodies.group.ends.has_tips()) bodies.tips.set_ends(bodies.motion.view());
 }
 
 }  // namespace catena::joint_coordinates

@@ -43,23 +43,23 @@ Motion ground_of(TipJoint const& joint, Quat const& orientation, Vec3 const& ori
 std::vector<JointedTip> jointed_tips(ChainGroup const& group, Scene const& scene,
                                      BodyMotion& start) {
     std::vector<JointedTip> tips;
-    for (LocalTip const& local : group.tips) {
+    for (LocalTip const& local : group.ends.tips) {
         tips.push_back(tip_of(local.joint, local.axes, local.screw, local.restricted));
         tips.back().body = local.body;
-        tips.back().com = -group.r1[local.body];
+        tips.back().com = -group.bodies.r1[local.body];
         if (!local.joint.ring)
             tips.back().ground =
                 ground_of(local.joint, as_quaternion(start.orientation[local.body]),
                           start.origin[local.body]);
     }
-    for (LocalRing const& ring : group.rings) {
+    for (LocalRing const& ring : group.ends.rings) {
         if (ring.last >= 0) {
-            JointedTip& tip = tips[group.tip_index(ring.last)];
+            JointedTip& tip = tips[group.ends.tip_index(ring.last)];
             tip.first = ring.first;
             tip.neighbour = ring.neighbour;
             continue;
         }
-        ChainSpec const& spec = scene.chains[group.chain[ring.chain]];
+        ChainSpec const& spec = scene.chains[group.chains[ring.chain].in_scene];
         LocalTip const there = local_tip(group, spec, -1);
         tips.push_back(tip_of(there.joint, there.axes, there.screw, there.restricted));
         tips.back().first = ring.first;
@@ -71,8 +71,8 @@ std::vector<JointedTip> jointed_tips(ChainGroup const& group, Scene const& scene
 
 double reach_of(ChainGroup const& group, Scene const& scene) {
     double longest = 0;
-    for (int const chain : group.chain) {
-        ChainSpec const& spec = scene.chains[chain];
+    for (GroupChain const& chain : group.chains) {
+        ChainSpec const& spec = scene.chains[chain.in_scene];
         BodyArrays const& b = spec.bodies;
         double length = spec.tip == Tip::jointed ? norm(spec.tip_joint.translation) : 0.0, size = 0;
         for (std::size_t k = 0; k < b.size(); ++k) {

@@ -27,7 +27,7 @@ struct JointedTip {
     Mat3 rotation;  // Rotation of J in the last body.
     /// Origin of J from the last body's origin, B.
     Vec3 translation;
-    Mat3 axes;  // Axes of the joint in the meeting frame, as ChainGroup::axes1.
+    Mat3 axes;  // Axes of the joint in the meeting frame, as LocalBodies::axes1.
     Screw<double> screw;
     /// Number of restricted directions.
     int restricted = 0;
@@ -38,7 +38,7 @@ struct JointedTip {
     /// Cosine of the angle between the axes of a universal joint.
     double cosine = 0;
 };
-/// Jointed tips of this rank's bodies: those of last bodies, in the order of ChainGroup::tips, then
+/// Jointed tips of this rank's bodies: those of last bodies, in the order of LocalEnds::tips, then
 /// those of rings that only begin here. `start` is the motion at the scene's start, positions
 /// included, which fixes the frames G on the ground.
 std::vector<JointedTip> jointed_tips(ChainGroup const&, Scene const&, BodyMotion& start);

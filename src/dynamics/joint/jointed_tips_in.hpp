@@ -27,7 +27,7 @@ class JointedTipsIn {
           tips_(host_),
           last_end_(count()),
           other_end_(count()),
-          bias_(group.has_tips() ? group.size : 0, group.directions) {
+          bias_(group.ends.has_tips() ? group.size : 0, group.directions) {
         if (count() > 0)
             space_.edit(other_end_, [&](View<13> view) {
                 for (std::int64_t i = 0; i < count(); ++i)

@@ -49,12 +49,12 @@ struct RevoluteScan {
     CATENA_HD void set_before(std::int64_t slot, Value const& value) const {
         motions().set_before(slot, value);
     }
-    CATENA_HD MotionScan<false> motions() const { return {loads.scan}; }
+    CATENA_HD MotionScan<false> motions() const { return {loads.moved.scan}; }
 
     /// Computes, after the scan, the motion of a run's first body and those of its loads that the
     /// solver does not know. For a run of one body it also computes the torque.
     CATENA_HD void begin(dca::Run const& run) const {
-        loads.scan.set_motion<false>(run.body);
+        loads.moved.scan.set_motion<false>(run.body);
         if (run.count == 1) loads.set_torque(run.body);
         loads.set_biases(run.body);
     }
@@ -64,7 +64,7 @@ struct RevoluteScan {
     /// JointLoads::set_relative). `may_begin`: body i may be the first of the run.
     template <bool may_begin>
     CATENA_HD Motion of_body(dca::Run const& run, int i) const {
-        JointScan const& s = loads.scan;
+        JointScan const& s = loads.moved.scan;
         std::int64_t const k = run.body + i;
         if (joint_by_joint) return s.load<false>(k);
         // All loads come first, so that a GPU waits for them together.

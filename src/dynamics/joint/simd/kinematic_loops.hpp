@@ -108,7 +108,7 @@ class FollowRevolutes {
 
   public:
     FollowRevolutes(JointLoads const& loads, double const* constants, bool prefetches)
-        : scan_(loads.scan),
+        : scan_(loads.moved.scan),
           constants_(constants),
           asks_ahead_(prefetches),
           q_(coordinate(scan_.state.q)),

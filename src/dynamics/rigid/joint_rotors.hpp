@@ -6,10 +6,10 @@
 // A kick makes it equal to the joint's velocity, a drift to the joint's mean velocity.
 #pragma once
 
-#include "chain/chain_group.hpp"
-#include "dca/solver.hpp"
+#include "dca/host_space.hpp"
 #include "dynamics/body_loads.hpp"
 #include "dynamics/constrained_step.hpp"
+#include "dynamics/rigid/rigid_state.hpp"
 #include "math/philox.hpp"
 
 namespace catena {
@@ -121,6 +121,52 @@ struct JointRotors {
         for (int i = 0; i < 3; ++i) noise[i] /= std::sqrt((between_drifts ? 1 : 2) * inertia(k, i));
         rate.store(k, plus_scaled(t.keep * rate.load(k), t.spread, noise));
     }
+};
+
+/// Storage behind JointRotors; empty if no joint is implicit.
+template <class Space>
+class JointRotorsIn {
+    template <int D>
+    using FieldOf = typename Space::template FieldOf<D>;
+
+  public:
+    /// `of_stiffness`: B / K.
+    JointRotorsIn(ChainGroup const& group, double of_stiffness)
+        : of_stiffness_(of_stiffness),
+          size_(std::ssize(group.joints.implicit)),
+          implicit_(group.joints.implicit),
+          rate_(size_),
+          torque_(size_),
+          flown_(size_),
+          compliance_(size_) {}
+
+    /// True if a joint of this rank is implicit.
+    explicit operator bool() const { return size_ > 0; }
+    /// Precondition: there are implicit joints.
+    JointRotors view(std::uint8_t const* is_first, ConstView<3> const& stiffness,
+                     ConstView<4> const& orientation) {
+        return {of_stiffness_, implicit_.data(), is_first,      stiffness,         orientation,
+                rate_.view(),  torque_.view(),   flown_.view(), compliance_.view()};
+    }
+    View<4> flown() { return flown_.view(); }
+    ConstView<6> compliance() const { return compliance_.view(); }
+    /// Adds the rotors' rates to the arrays of a checkpoint. They are stored on ranks without
+    /// implicit joints too.
+    void add_arrays(Space const& space, std::vector<StateArray>& arrays) const {
+        if (of_stiffness_ > 0)
+            arrays.push_back(to_array<3>("rotor", space.read(rate_).view(), space.on_host()));
+    }
+    void set(Space const& space, std::vector<StateArray> const& arrays) {
+        if (size_ > 0) set_field<3>(space, rate_, array_named(arrays, "rotor"));
+    }
+
+  private:
+    double of_stiffness_;
+    std::int64_t size_;
+    typename Space::template List<std::uint8_t> implicit_;
+    FieldOf<3> rate_, torque_;
+    FieldOf<4> flown_;
+    FieldOf<6> compliance_;
 };
 
 }  // namespace catena

@@ -1,5 +1,5 @@
 // Starting poses of rigid chains and the principal axes of their bodies.
-#include "dynamics/rigid_dynamics.hpp"
+#include "dynamics/rigid/rigid_dynamics.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 /// Start of bodies on links: their poses are in the scene.
 void place_linked(ChainGroup const& group, Scene const& scene, RigidStart& start) {
     for (dca::Piece const& piece : group.pieces) {
-        LinkedArrays const& linked = scene.chains[group.chain[piece.chain]].linked;
+        LinkedArrays const& linked = scene.chains[group.chains[piece.chain].in_scene].linked;
         for (std::int64_t i = 0; i < piece.count; ++i) {
             std::int64_t const k = piece.local + i;
             auto const body = static_cast<std::size_t>(piece.body + i);
@@ -35,8 +35,9 @@ void place_jointed(ChainGroup const& group, Scene const& scene, Communicator con
     JointKinematics(group, host, communicator).evaluate(state.view(), true, motion.view());
     for (std::int64_t k = 0; k < group.size; ++k) {
         Mat3 const axes = to_matrix(as_quaternion(motion.orientation[k]));
-        start.position.set(k, motion.origin[k] - axes * group.r1[k]);
-        start.velocity.set(k, axes * (motion.velocity[k] - cross(motion.omega[k], group.r1[k])));
+        start.position.set(k, motion.origin[k] - axes * group.bodies.r1[k]);
+        start.velocity.set(
+            k, axes * (motion.velocity[k] - cross(motion.omega[k], group.bodies.r1[k])));
         start.omega.set(k, motion.omega[k]);
         start.orientation.set(k, motion.orientation[k]);
     }
@@ -74,7 +75,7 @@ RigidStart place_bodies(ChainGroup const& group, Scene const& scene,
 PrincipalFrames principal_frames(ChainGroup const& group) {
     PrincipalFrames frames{Field<4>(group.size), Field<3>(group.size)};
     for (std::int64_t k = 0; k < group.size; ++k) {
-        PrincipalFrame const frame = principal_frame(as_symmetric(group.inertia[k]));
+        PrincipalFrame const frame = principal_frame(as_symmetric(group.bodies.inertia[k]));
         frames.axes.set(k, as_vector(frame.rotation));
         frames.moment.set(k, frame.moments);
     }
@@ -84,9 +85,9 @@ PrincipalFrames principal_frames(ChainGroup const& group) {
 double reach_of_joints(ChainGroup const& group, Communicator const& communicator) {
     double reach = 0;
     for (std::int64_t k = 0; k < group.size; ++k)
-        reach = std::max(
-            {reach, norm(group.r1[k]), norm(group.r2[k]),
-             radius_of_gyration(as_symmetric(group.inertia[k]), group.mass.view().at(k, 0))});
+        reach = std::max({reach, norm(group.bodies.r1[k]), norm(group.bodies.r2[k]),
+                          radius_of_gyration(as_symmetric(group.bodies.inertia[k]),
+                                             group.bodies.mass.view().at(k, 0))});
     return communicator.max(reach);
 }
 

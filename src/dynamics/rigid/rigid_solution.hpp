@@ -10,7 +10,8 @@ namespace catena {
 PotentialEnergy potential_of(ChainGroup const&, BodyLoads const&, Field<3> const& position,
                              Field<4> const& orientation);
 
-/// Results and inputs of the last evaluate(); the members have the meanings of RigidChains.
+/// Results and inputs of the last evaluate(). RigidSteps, RigidLoads, RigidJoints and HandlesView
+/// document the fields.
 struct RigidSolution {
     ChainGroup const& group;
     ConstView<4> orientation;
