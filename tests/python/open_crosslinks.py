@@ -88,8 +88,7 @@ def starts_from_a_frame(scene, frame, whole, folder):
     catena("run", scene, "--output", output, "--quiet", "--steps", "0", "--set", f"start={{from: {frame}}}")
     with h5py.File(os.path.join(output, "trajectory.h5md")) as file:
         check(np.abs(file["particles/trajectory/position/value"][0] - whole[-1]).max() < 1e-9, "a frame as start changes positions")
-    other = write(folder, "another", crosslinks="[[5, 10, 0.7]]")
-    refused("has other cross-links in", "check", other, "--set", f"start={{from: {frame}}}")
+    starts_from_a_frame_without_its_crosslinks(frame, folder)
     reordered = write(folder, "reordered")  # the order of the list does not count
     with open(reordered) as file:
         text = file.read().replace("[[1, 30, 0.5], [5, 20, 0.6]]", "[[20, 5, 0.6], [30, 1, 0.5]]")
@@ -97,6 +96,23 @@ def starts_from_a_frame(scene, frame, whole, folder):
         file.write(text)
     told = catena("check", reordered, "--set", f"start={{from: {frame}}}")
     check("to close cross-links" not in told, f"a note tells of the start that the frame replaces: {told}")
+
+
+def starts_from_a_frame_without_its_crosslinks(frame, folder):
+    """Lengths come from the scene, beads further apart need `relax`; a length that the frame's run did not hold is not taken from it."""
+    other = write(folder, "another", crosslinks="[[5, 10, 1.9], [5, 9]]")
+    start = ("--set", f"start={{from: {frame}}}")
+    refused("write `relax: true`, or give a frame that fits", "check", write(folder, "tight", crosslinks="[[5, 10, 0.3]]"), *start)
+    output = os.path.join(folder, "relaxed")
+    told = catena("run", other, "--output", output, "--steps", "0", *start, "--set", "relax=true")
+    check("2 of 4 chains have other cross-links in" in told and "`star-1`, has 1 there and 2 here" in told, told)
+    with h5py.File(os.path.join(output, "trajectory.h5md")) as file:
+        x = file["particles/trajectory/position/value"][0]
+    for a, b, length in ((34, 38, 0.7), (34, 39, 1.9)):
+        check(abs(np.linalg.norm(x[a] - x[b]) - length) < 1e-9, f"cross-link {a}-{b}: {np.linalg.norm(x[a] - x[b])}")
+    missing = write(folder, "missing", crosslinks="[[5, 10]]")
+    refused("the cross-link of beads 5 and 10 has no length, and `", "check", missing, *start)
+    catena("check", write(folder, "fewer", crosslinks="[]"), *start)
 
 
 def open_lengths_are_those_of_the_frame(folder):
