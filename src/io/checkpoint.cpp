@@ -101,7 +101,7 @@ void refuse_folder(std::string const& file) {
         if (std::filesystem::is_regular_file(inside, unseen))
             throw InputError("a folder, not a checkpoint", file, "name " + inside.string());
     }
-    throw InputError("a folder without a checkpoint", file,
+    throw InputError("a folder, not a checkpoint", file,
                      remedy_of_missing((std::filesystem::path(file) / "checkpoint.h5").string()));
 }
 

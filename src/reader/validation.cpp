@@ -329,6 +329,7 @@ void check_together(Node const& root, Scene& scene, std::vector<Draft> const& dr
     }
     check_temperature(root, scene.output, scene.dynamics, drafts);
     check_end_to_end(root, scene.output, drafts);
+    note_crosslink_forces(scene, drafts);
     if (scene.forces.openmm) check_openmm(root, scene, drafts);
 }
 
