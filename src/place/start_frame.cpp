@@ -204,8 +204,10 @@ class FrameStart {
     void close_crosslinks(Draft& draft) {
         bool const is_known = !draft.node->find("crosslinks") ||
                               (&draft != drafts_.data() && (&draft - 1)->node == draft.node);
+        // Without forces no overlap of beads that are pulled together does harm.
         fit_crosslinks(draft.chain, {.scene = scene_,
                                      .from = *fields_.find("from"),
+                                     .far = !scene_.forces.openmm,
                                      .is_known = is_known,
                                      .remedy = "write `relax: true`, or give a frame that fits"});
     }
