@@ -112,8 +112,8 @@ void refuse_large_checkpoint(OwnState const& own, Scene const& scene,
                              Communicator const& communicator, std::string const& folder) {
     double bytes = 0;
     for (auto const& [name, array] : own)
-        bytes += static_cast<double>(sizeof(double)) * static_cast<double>(scene.bodies()) *
-                 array.width;
+        bytes +=
+            static_cast<double>(sizeof(double)) * static_cast<double>(scene.bodies()) * array.width;
     on_first_rank(communicator, [&] {
         rlimit limit{};
         if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||

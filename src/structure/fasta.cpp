@@ -174,9 +174,9 @@ void note_nucleotides(std::string const& letters, Node const& source, ResidueTab
     bool const poly_a = letters.find_first_not_of('A') == std::string::npos;
     for (char const base : {'A', 'C', 'G'})
         if (!poly_a && letters.find(base) == std::string::npos) return;
-    char const* const found = poly_a                                     ? "letter A"
+    char const* const found = poly_a                                   ? "letter A"
                               : letters.find('T') == std::string::npos ? "letters A, C and G"
-                                                                         : "letters A, C, G and T";
+                                                                       : "letters A, C, G and T";
     scene.note(fmt::format("`{}` has the {} alone and is read as a protein: {}", source.path(),
                            found,
                            "RNA takes `model: calvados_rna` and the letter U, DNA has no model"));

@@ -218,9 +218,9 @@ bool has_phases(Analysis const& found) {
         [](Quantity const& quantity) { return quantity.name == "dense_concentration"; });
 }
 bool says(Analysis const& found, std::string const& part) {
-    return std::any_of(
-        found.notes.begin(), found.notes.end(),
-        [&](std::string const& note) { return note.find(part) != std::string::npos; });
+    return std::any_of(found.notes.begin(), found.notes.end(), [&](std::string const& note) {
+        return note.find(part) != std::string::npos;
+    });
 }
 
 TEST(Slab, FillsTheBoxAcrossItsAxis) {
