@@ -57,9 +57,17 @@ double cutoff_of(FrameSource const& source, Options const& options) {
     return options.cutoff.value_or(source.topology.si ? 0 : default_cutoff);
 }
 
-/// Adds profiles and phases of a slab.
-void report_slab(Analysis& to, DensityProfile const& profile, bool si) {
-    std::string const unit = si ? "kg/m^3" : "mg/ml";
+/// Says what is no slab about the profile; empty if it may be one.
+std::string doubt_of(DensityProfile const& profile) {
+    if (profile.is_uneven_across())
+        return "the dense part does not fill the box across the axis, as a droplet or a cylinder";
+    if (profile.may_be_chance())
+        return "so few chains are as uneven along the axis at random places, without two phases";
+    return "";
+}
+
+/// Adds the density profiles.
+void report_profiles(Analysis& to, DensityProfile const& profile, std::string const& unit) {
     for (std::size_t k = 0; k <= to.kinds.size(); ++k) {
         if (k == to.kinds.size() && k == 1) break;  // all chains are of one kind
         Curve curve{"density", k < to.kinds.size() ? to.kinds[k].name : "all",
@@ -72,6 +80,12 @@ void report_slab(Analysis& to, DensityProfile const& profile, bool si) {
         }
         to.curves.push_back(std::move(curve));
     }
+}
+
+/// Adds profiles and phases of a slab. `axis`: the one that was found and not asked for, or empty.
+void report_slab(Analysis& to, DensityProfile const& profile, bool si, std::string const& axis) {
+    std::string const unit = si ? "kg/m^3" : "mg/ml";
+    report_profiles(to, profile, unit);
     Interfaces const found = profile.interfaces();
     Range const inside = DensityProfile::dense_region(found),
                 outside = profile.dilute_region(found);
@@ -82,6 +96,13 @@ void report_slab(Analysis& to, DensityProfile const& profile, bool si) {
             "no slab was found: the density profile has no dense and dilute part with room between "
             "its interfaces; see density.csv");
         return;
+    }
+    if (std::string const doubt = doubt_of(profile); !doubt.empty()) {
+        to.notes.push_back(doubt + (axis.empty()
+                                        ? ": the concentrations may not be those of two phases"
+                                        : ": there are no concentrations of two phases; --slab " +
+                                              axis + " gives them nevertheless"));
+        if (!axis.empty()) return;
     }
     for (std::size_t k = 0; k <= all; ++k) {
         if (k == all && all == 1) break;
@@ -213,8 +234,8 @@ Analysis analyse(FrameSource const& source, Options const& options) {
     std::vector<ChainNumbers> chains;
     for (Kind const& kind : to.kinds) chains.emplace_back(topology, kind, frames);
     std::optional<DensityProfile> profile;
-    if (auto const axis = slab_axis(source, options))
-        profile.emplace(topology, to.kinds, *axis, options.bins, frames);
+    std::optional<int> const axis = slab_axis(source, options);
+    if (axis) profile.emplace(topology, to.kinds, *axis, options.bins, frames);
     std::unique_ptr<Contacts> contacts;
     if (to.cutoff > 0) contacts = std::make_unique<Contacts>(topology, to.kinds, to.cutoff, frames);
     Snapshot snapshot;
@@ -227,7 +248,7 @@ Analysis analyse(FrameSource const& source, Options const& options) {
     EvenFrames const even = even_frames(to.steps);
     for (ChainNumbers const& of_kind : chains) of_kind.report(to, options, even);
     if (contacts) report_contacts(to, *contacts);
-    if (profile) report_slab(to, *profile, topology.si);
+    if (profile) report_slab(to, *profile, topology.si, options.slab ? std::string() : axes[*axis]);
     note_uneven(to, even);
     count_replicas(to);
     return to;

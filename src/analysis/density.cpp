@@ -4,22 +4,41 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "math/concentration_units.hpp"
 
 namespace catena::analysis {
 namespace {
 
-/// Returns the circular mean of coordinates in a periodic edge, weighted with masses.
-double middle_of(std::vector<Vec3> const& x, std::vector<double> const& mass, int axis,
-                 double edge) {
-    double const turn = 2 * std::numbers::pi / edge;
-    double sine = 0, cosine = 0;
-    for (std::size_t k = 0; k < x.size(); ++k) {
-        sine += mass[k] * std::sin(turn * x[k][axis]);
-        cosine += mass[k] * std::cos(turn * x[k][axis]);
+/// First Fourier component of the mass along a periodic edge.
+class Wave {
+  public:
+    explicit Wave(double edge) : turn_(2 * std::numbers::pi / edge) {}
+    void add(double mass, double x) {
+        mass_ += mass;
+        sine_ += mass * std::sin(turn_ * x);
+        cosine_ += mass * std::cos(turn_ * x);
     }
-    return std::atan2(sine, cosine) / turn;
+    /// Circular mean of the coordinates.
+    double middle() const { return std::atan2(sine_, cosine_) / turn_; }
+    /// 0 for even mass, 1 for mass at one place.
+    double amplitude() const { return mass_ > 0 ? std::hypot(sine_, cosine_) / mass_ : 0; }
+
+  private:
+    double turn_, mass_ = 0, sine_ = 0, cosine_ = 0;
+};
+
+/// Number of chains of equal masses whose random places would make the mass as uneven as these.
+double even_chains(Topology const& topology) {
+    double sum = 0, squares = 0;
+    for (Topology::Chain const& chain : topology.chains) {
+        auto const first = topology.mass.begin() + static_cast<std::ptrdiff_t>(chain.first);
+        double const mass = std::accumulate(first, first + chain.count, 0.0);
+        sum += mass;
+        squares += mass * mass;
+    }
+    return squares > 0 ? sum * sum / squares : 1;
 }
 
 }  // namespace
@@ -32,6 +51,7 @@ DensityProfile::DensityProfile(Topology const& topology, std::vector<Kind> const
       unit_(topology.si ? 1 : mg_per_ml),
       owner_(topology.mass.size(), 0),
       mass_(topology.mass),
+      chance_(0.5 * std::sqrt(std::numbers::pi / even_chains(topology))),
       profiles_((kinds.size() + 1) * bins, frames) {
     for (std::size_t k = 0; k < kinds.size(); ++k)
         for (std::size_t const chain : kinds[k].chains) {
@@ -43,7 +63,13 @@ DensityProfile::DensityProfile(Topology const& topology, std::vector<Kind> const
 
 void DensityProfile::add(Snapshot const& snapshot) {
     Vec3 const& box = *snapshot.box;
-    double const edge = box[axis_], middle = middle_of(snapshot.position, mass_, axis_, edge);
+    double const edge = box[axis_];
+    Wave along(edge);
+    for (std::size_t k = 0; k < mass_.size(); ++k) along.add(mass_[k], snapshot.position[k][axis_]);
+    double const middle = along.middle();
+    int const sides[] = {(axis_ + 1) % 3, (axis_ + 2) % 3};
+    double const near = 0.5 * std::min(box[sides[0]], box[sides[1]]) / edge;
+    Wave across[] = {Wave(box[sides[0]]), Wave(box[sides[1]])};
     auto const count = static_cast<double>(bins_);
     double const density = unit_ * count / (box[0] * box[1] * box[2]);
     std::span<double> const row = profiles_.row();
@@ -54,10 +80,23 @@ void DensityProfile::add(Snapshot const& snapshot) {
             std::min(bins_ - 1, static_cast<std::size_t>(std::max(0.0, place) * count));
         row[owner_[k] * bins_ + bin] += density * mass_[k];
         row[kinds_ * bins_ + bin] += density * mass_[k];
+        for (int i = 0; i < 2 && std::abs(place - 0.5) <= near; ++i)
+            across[i].add(mass_[k], snapshot.position[k][sides[i]]);
     }
+    along_ += along.amplitude();
+    across_ += std::max(across[0].amplitude(), across[1].amplitude());
     profiles_.end_frame();
     edges_ += edge;
     ++frames_;
+}
+
+bool DensityProfile::may_be_chance() const {
+    return along_ < beyond_chance * chance_ * static_cast<double>(frames_);
+}
+
+bool DensityProfile::is_uneven_across() const {
+    double constexpr uneven = 0.35;  // a sphere as wide as the box has 0.30, one of 2/3 of it 0.63
+    return across_ > std::max(uneven, beyond_chance * chance_) * static_cast<double>(frames_);
 }
 
 double DensityProfile::z(std::size_t bin) const {

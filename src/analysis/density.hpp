@@ -35,6 +35,11 @@ class DensityProfile {
     /// kinds.
     Estimate at(std::size_t kind, std::size_t bin) const;
 
+    /// True if the mass is as uneven along the axis as the random places of so few chains make it.
+    bool may_be_chance() const;
+    /// True if the dense part does not fill the box across the axis: a droplet or a cylinder. The
+    /// mass within half the shorter edge of the middle tells it.
+    bool is_uneven_across() const;
     /// Fits the interfaces to the profile of all sites, both halves averaged.
     Interfaces interfaces() const;
     /// Regions of |z| that count as dense and dilute: up to z0 - 2 w, and from z0 + 6 w on.
@@ -47,6 +52,8 @@ class DensityProfile {
     Estimate in(std::size_t kind, Range const& region) const;
 
   private:
+    /// Least ratio of an amplitude to that of random places that is not chance.
+    static double constexpr beyond_chance = 1.5;
     double edge() const { return edges_ / static_cast<double>(frames_); }
 
     int axis_;
@@ -54,8 +61,10 @@ class DensityProfile {
     double unit_;                     // mg/ml per unit of mass and volume
     std::vector<std::size_t> owner_;  // kind of each site
     std::vector<double> mass_;        // of each site
+    double chance_;                   // mean amplitude along an edge of chains at random places
     BlockMeans profiles_;             // [kind, then all][bin]
     double edges_ = 0;                // sum of the edges along the axis
+    double along_ = 0, across_ = 0;   // sums of the amplitudes of the mass along and across it
     std::int64_t frames_ = 0;
 };
 

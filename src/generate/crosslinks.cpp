@@ -261,8 +261,7 @@ void close(ChainSpec& chain, CrossLink const& most, CrossLinkFit const& fit) {
         fmt::format("{} are {:.4g} {} apart, their cross-link is {:.4g} {} long",
                     ends_text(chain, most), distance, unit, most.length, unit);
     if (!fit.far && !fit.scene.relax && part > largest_link_change)
-        fail(fit.from, what,
-             "write `relax: true`, give positions that fit, or leave the length out");
+        fail(fit.from, what, fit.remedy);
     if (!close_in_steps(chain, chain.beads.position))
         fail(fit.from, what + ", and no positions nearby close all links",
              "give other positions, or other lengths");

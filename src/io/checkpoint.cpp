@@ -92,6 +92,19 @@ std::string remedy_of_missing(std::string const& file) {
            "anew with --overwrite and a smaller output.checkpoint_every";
 }
 
+/// Throws InputError for a folder, with the checkpoint that it holds.
+void refuse_folder(std::string const& file) {
+    if (!std::filesystem::is_directory(file)) return;
+    for (char const* const name : {"checkpoint.h5", "checkpoint.previous.h5"}) {
+        std::filesystem::path const inside = std::filesystem::path(file) / name;
+        std::error_code unseen;
+        if (std::filesystem::is_regular_file(inside, unseen))
+            throw InputError("a folder, not a checkpoint", file, "name " + inside.string());
+    }
+    throw InputError("a folder, not a checkpoint", file,
+                     remedy_of_missing((std::filesystem::path(file) / "checkpoint.h5").string()));
+}
+
 }  // namespace
 
 std::string previous_checkpoint(std::string const& file) {
@@ -108,6 +121,7 @@ Checkpoint read_checkpoint(std::string const& file) {
         throw InputError("the checkpoint cannot be accessed, " + unseen.message(), file,
                          "name the checkpoint.h5 of a run");
     if (!exists) throw InputError("no such checkpoint", file, remedy_of_missing(file));
+    refuse_folder(file);
     std::string const previous = previous_checkpoint(file);
     bool const has_previous = std::filesystem::exists(previous, unseen);
     std::string const remedy = has_previous ? "use the previous one, " + previous : "start anew";

@@ -79,11 +79,22 @@ void refuse_other_chain(Topology::Chain const& other, ChainSpec const& chain, st
              fmt::format("chain {}, `{}`, branches otherwise in `{}` than in the scene", number,
                          shown(chain.name), file),
              "give a trajectory of the same chains");
-    if (!are_the_same(other.crosslinks, ends_of_crosslinks(chain)))
-        fail(from,
-             fmt::format("chain {}, `{}`, has other cross-links in `{}` than in the scene", number,
-                         shown(chain.name), file),
-             "give a trajectory of the same chains");
+}
+
+/// Notes how many chains have other cross-links in the frame, and the first of them.
+void note_other_crosslinks(ChosenFrame const& frame, std::vector<Draft> const& drafts,
+                           Scene& scene) {
+    std::size_t others = 0, first = 0;
+    for (std::size_t c = drafts.size(); c-- > 0;)
+        if (!are_the_same(frame.chains[c].crosslinks, ends_of_crosslinks(drafts[c].chain)))
+            ++others, first = c;
+    if (others > 0)
+        scene.note(fmt::format(
+            "{} of {} chains {} other cross-links in `{}` than in the scene, whose count: the "
+            "first, `{}`, has {} there and {} here",
+            others, drafts.size(), others == 1 ? "has" : "have", frame.file,
+            shown(drafts[first].chain.name), frame.chains[first].crosslinks.size(),
+            drafts[first].chain.crosslinks.size()));
 }
 
 /// Notes how many chains the frame names otherwise, and the first of them.
@@ -114,6 +125,7 @@ void compare_chains(ChosenFrame const& frame, std::vector<Draft> const& drafts, 
     for (std::size_t c = 0; c < drafts.size(); ++c)
         refuse_other_chain(frame.chains[c], drafts[c].chain, c + 1, frame.file, from);
     note_other_names(frame, drafts, scene);
+    note_other_crosslinks(frame, drafts, scene);
 }
 
 /// Throws InputError for a bead whose residue has another name in the frame.

@@ -9,8 +9,8 @@
 namespace catena::scene {
 
 /// Throws InputError unless the frame has beads for every chain of the scene: the same numbers of
-/// chains and beads, branches, cross-links and residues, in the same units. Notes chains with other
-/// names. `start` is the scene's section, `from` names the frame.
+/// chains and beads, branches and residues, in the same units. Notes chains with other names or
+/// cross-links. `start` is the scene's section, `from` names the frame.
 void refuse_frame_of_others(ChosenFrame const&, std::vector<Draft> const&, Scene&,
                             Node const& start, Node const& from);
 

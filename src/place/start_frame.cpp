@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -130,6 +131,7 @@ class FrameStart {
         std::size_t site = 0;
         for (Draft& draft : drafts_) {
             std::size_t const count = draft.chain.bead_count();
+            if (draft.chain.is_cross_linked()) open_crosslinks(draft);
             place(draft, std::span(frame_.position).subspan(site, count), fit, box);
             site += count;
         }
@@ -170,14 +172,44 @@ class FrameStart {
                 beads.arrays.position[first] - to_matrix(q) * linked.carried.position[first];
         }
     }
-    /// Gives cross-links their lengths, which are those of the frame where the scene gives none.
+    /// Takes the lengths from cross-links without one that are links of the frame's run, too, or
+    /// may be: the frame has them. Others keep the distance of the scene's positions. Throws
+    /// InputError if the scene generates these.
+    void open_crosslinks(Draft& draft) {
+        ChainSpec& chain = draft.chain;
+        auto const number = static_cast<std::size_t>(&draft - drafts_.data());
+        for (std::size_t c = 0; c < draft.open_crosslinks.size(); ++c) {
+            if (!draft.open_crosslinks[c]) continue;
+            CrossLink& link = chain.crosslinks[c];
+            if (is_linked_in_frame(number, link))
+                link.length = 0;
+            else if (link.length == 0)
+                fail(*draft.node->find("crosslinks"),
+                     fmt::format("the cross-link of beads {} and {} has no length, and `{}` is of "
+                                 "a run without it",
+                                 link.inboard + 1, link.outboard + 1, frame_.file),
+                     fmt::format("add it, [{}, {}, LENGTH]; `relax: true` pulls the beads together",
+                                 link.inboard + 1, link.outboard + 1));
+        }
+    }
+    /// True if the run of the frame had the cross-link, or the file does not tell.
+    bool is_linked_in_frame(std::size_t chain, CrossLink const& link) const {
+        if (frame_.chains.empty()) return true;
+        auto const& there = frame_.chains[chain].crosslinks;
+        std::array<std::int64_t, 2> const ends{link.inboard, link.outboard};
+        return std::find(there.begin(), there.end(), ends) != there.end();
+    }
+    /// Gives cross-links their lengths. Redundant links are noted once for all copies of a chain;
+    /// those of an imported System have been noted.
     void close_crosslinks(Draft& draft) {
-        std::vector<CrossLink>& links = draft.chain.crosslinks;
-        for (std::size_t c = 0; c < draft.open_crosslinks.size(); ++c)
-            if (draft.open_crosslinks[c]) links[c].length = 0;
-        // Reading the scene has noted redundant links.
-        fit_crosslinks(draft.chain,
-                       {.scene = scene_, .from = *fields_.find("from"), .is_known = true});
+        bool const is_known = !draft.node->find("crosslinks") ||
+                              (&draft != drafts_.data() && (&draft - 1)->node == draft.node);
+        // Without forces no overlap of beads that are pulled together does harm.
+        fit_crosslinks(draft.chain, {.scene = scene_,
+                                     .from = *fields_.find("from"),
+                                     .far = !scene_.forces.openmm,
+                                     .is_known = is_known,
+                                     .remedy = "write `relax: true`, or give a frame that fits"});
     }
     /// Lays the rigid domains of a chain on their beads and moves these onto them. Returns one
     /// motion per unit; that of a single bead is no rotation.

@@ -43,6 +43,8 @@ struct ChainRequest {
     std::int64_t particle = 0;
     /// Chain of the entry's structure that is read now, or nullptr.
     StructurePart const* part = nullptr;
+    /// True if `start` replaces the positions by those of a frame.
+    bool from_frame = false;
 
     /// Throws InputError for keys without meaning for this kind of chain: those of `record, model,
     /// positions, links, anchor, conformation, rigid, charge_termini, chain, conformer, gaps,

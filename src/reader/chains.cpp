@@ -217,8 +217,19 @@ void take_length(CrossLink& link, ChainRequest const& request) {
     if (length > 0) link.length = length;
 }
 
+/// Gives cross-links without a length the distance of the written positions. Those of generated
+/// ones, which the frame of `start` replaces, stay without.
+void take_written_lengths(ChainSpec& chain, bool generated) {
+    for (CrossLink& link : chain.crosslinks)
+        if (link.length == 0 && !generated)
+            link.length = norm(chain.beads.position[static_cast<std::size_t>(link.outboard)] -
+                               chain.beads.position[static_cast<std::size_t>(link.inboard)]);
+    chain.redundant_links = redundant_links(chain);
+}
+
 /// Adds the entry's cross-links. Where the System joins two beads its length counts, unless the
-/// entry gives one or has `links: as_given`. Returns Draft::open_crosslinks.
+/// entry gives one or has `links: as_given`. A frame that replaces the positions is fitted to them
+/// later. Returns Draft::open_crosslinks.
 std::vector<bool> cross_link(ChainSpec& chain, ChainRequest const& request, Node const& source,
                              bool quiet) {
     Node const* const node = request.fields.find("crosslinks");
@@ -228,7 +239,7 @@ std::vector<bool> cross_link(ChainSpec& chain, ChainRequest const& request, Node
     if (chain.name.empty()) chain.name = request.name();
     for (CrossLink& link : chain.crosslinks) {
         take_length(link, request);
-        if (link.length == 0 && generated)
+        if (link.length == 0 && generated && !request.from_frame)
             fail(*node,
                  fmt::format("the cross-link of beads {} and {} has no length, and the start is "
                              "generated",
@@ -238,7 +249,10 @@ std::vector<bool> cross_link(ChainSpec& chain, ChainRequest const& request, Node
     note_residues(chain.crosslinks, request);
     std::vector<bool> open;
     for (CrossLink const& link : chain.crosslinks) open.push_back(link.length == 0);
-    fit_crosslinks(chain, {request.scene, *node, generated, quiet});
+    if (request.from_frame)
+        take_written_lengths(chain, generated);
+    else
+        fit_crosslinks(chain, {request.scene, *node, generated, quiet});
     return open;
 }
 
@@ -326,13 +340,13 @@ void say_ends(ChainRequest const& request, std::string const& name) {
 class ChainReader {
   public:
     /// Reads what all copies share: base, tip, count and generator.
-    ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm,
-                WrittenSystem const* system)
+    ChainReader(Node const& entry, std::size_t index, Scene& scene, ChainContext const& context)
         : request_{chain_fields(entry), entry, index, scene},
           source_(source_of(request_.fields)),
-          warm_(warm) {
+          warm_(context.warm) {
         request_.base = base_of(request_.fields, source_);
-        request_.system = system;
+        request_.system = context.system;
+        request_.from_frame = context.from_frame;
         tip_ = read_tip(request_.fields);
         if (Node const* const count = request_.fields.find("count")) count_ = whole(*count, 1);
         concentration_ = request_.fields.find("concentration");
@@ -530,9 +544,9 @@ class ChainReader {
 
 }  // namespace
 
-void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm,
-                WrittenSystem const* system, std::vector<Draft>& drafts) {
-    ChainReader(entry, index, scene, warm, system).append_to(drafts);
+void read_chain(Node const& entry, std::size_t index, Scene& scene, ChainContext const& context,
+                std::vector<Draft>& drafts) {
+    ChainReader(entry, index, scene, context).append_to(drafts);
 }
 
 }  // namespace catena::scene

@@ -11,11 +11,19 @@ namespace catena::scene {
 
 class WrittenSystem;
 
+/// What other sections say of all chains.
+struct ChainContext {
+    /// True if the scene names a temperature; chains without velocities then start thermal.
+    bool warm = false;
+    /// True if `start` replaces all positions by those of a frame.
+    bool from_frame = false;
+    /// The System named together with the chains, or nullptr.
+    WrittenSystem const* system = nullptr;
+};
+
 /// Reads the entry `index` (from 0) of `chains` into `count` chains and appends them. `scene` holds
-/// all sections except the chains. `warm` is true if the scene names a temperature; chains without
-/// velocities then start thermal. `system` is the System named together with the chains, or
-/// nullptr. Throws InputError.
-void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm,
-                WrittenSystem const* system, std::vector<Draft>& drafts);
+/// all sections except the chains. Throws InputError.
+void read_chain(Node const& entry, std::size_t index, Scene& scene, ChainContext const&,
+                std::vector<Draft>& drafts);
 
 }  // namespace catena::scene

@@ -112,9 +112,11 @@ std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     if (frame.forces.openmm && !frame.forces.openmm->system.empty()) system.emplace(frame);
     if (scene::list(chains).items.empty())
         scene::fail(chains, "the list of chains is empty", "describe at least one chain");
+    scene::ChainContext const context{warm, fields.find("start") != nullptr,
+                                      system ? &*system : nullptr};
     std::vector<scene::Draft> drafts;
     for (std::size_t i = 0; i < chains.items.size(); ++i)
-        scene::read_chain(chains.items[i], i, frame, warm, system ? &*system : nullptr, drafts);
+        scene::read_chain(chains.items[i], i, frame, context, drafts);
     // Soft bonds are judged when all chains are known, for one note on all of them.
     if (system) system->judge(drafts, frame);
     if (system && system->is_periodic()) scene::refuse_periodic_system(fields, false, frame);

@@ -60,7 +60,8 @@ Residues residues_named(PdbSites const& from, Node const& source, ResidueTable c
         if (!residues.back())
             fail_at(source, "bead", bead,
                     fmt::format("`{}` is not a residue of {}", residue, table.name()),
-                    "rename or remove it in the file");
+                    is_nucleotide(site.residue) ? nucleotide_remedy
+                                                : "rename or remove it in the file");
         if (meaning.parent != site.residue) ++renamed[{site.residue, meaning.parent}];
     }
     std::string list;

@@ -299,9 +299,20 @@ void check_end_to_end(Node const& root, OutputSpec const& output,
          "leave it out; `radius_of_gyration` is their size");
 }
 
+/// Notes that trajectories have no forces of cross-links.
+void note_crosslink_forces(Scene& scene, std::vector<Draft> const& drafts) {
+    auto const linked = std::find_if(drafts.begin(), drafts.end(),
+                                     [](Draft const& d) { return d.chain.is_cross_linked(); });
+    if (scene.output.joint_forces && linked != drafts.end())
+        scene.note(
+            fmt::format("`joint_forces` leaves out the forces of cross-links, of chain `{}` for "
+                        "one: `catena solve --json` gives those of a start",
+                        shown(linked->chain.name)));
+}
+
 }  // namespace
 
-void check_together(Node const& root, Scene const& scene, std::vector<Draft> const& drafts) {
+void check_together(Node const& root, Scene& scene, std::vector<Draft> const& drafts) {
     check_names(drafts);
     bool const projected = std::any_of(drafts.begin(), drafts.end(),
                                        [](Draft const& d) { return goes_by_paths(d.chain); });
@@ -318,6 +329,7 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
     }
     check_temperature(root, scene.output, scene.dynamics, drafts);
     check_end_to_end(root, scene.output, drafts);
+    note_crosslink_forces(scene, drafts);
     if (scene.forces.openmm) check_openmm(root, scene, drafts);
 }
 

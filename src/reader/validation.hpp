@@ -10,8 +10,8 @@
 
 namespace catena::scene {
 
-/// Throws InputError for combinations that cannot be computed. `scene` has all sections except the
-/// chains, which are in `drafts`.
-void check_together(Node const& root, Scene const& scene, std::vector<Draft> const& drafts);
+/// Throws InputError for combinations that cannot be computed, and notes what output leaves out.
+/// `scene` has all sections except the chains, which are in `drafts`.
+void check_together(Node const& root, Scene& scene, std::vector<Draft> const& drafts);
 
 }  // namespace catena::scene

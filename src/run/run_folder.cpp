@@ -1,6 +1,9 @@
 // Implements the output folder of a run: creation, frames, checkpoints and final files.
 #include "run/run_folder.hpp"
 
+#include <fmt/format.h>
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -103,6 +106,24 @@ std::string RunFolder::newest_checkpoint() const {
     for (char const* name : {"checkpoint.h5", "checkpoint.previous.h5"})
         if (fs::exists(path(name), ignored)) return path(name);
     return {};
+}
+
+void refuse_large_checkpoint(OwnState const& own, Scene const& scene,
+                             Communicator const& communicator, std::string const& folder) {
+    double bytes = 0;
+    for (auto const& [name, array] : own)
+        bytes +=
+            static_cast<double>(sizeof(double)) * static_cast<double>(scene.bodies()) * array.width;
+    on_first_rank(communicator, [&] {
+        rlimit limit{};
+        if (getrlimit(RLIMIT_FSIZE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
+            bytes <= static_cast<double>(limit.rlim_cur))
+            return;
+        throw InputError(fmt::format("a checkpoint takes {:.3g} MB at least, `ulimit -f` allows "
+                                     "files of {:.3g} MB",
+                                     1e-6 * bytes, 1e-6 * static_cast<double>(limit.rlim_cur)),
+                         folder + "/checkpoint.h5", "raise it, or make fewer bodies or copies");
+    });
 }
 
 void RunFolder::open(Topology const& topology, Observables const& observables,

@@ -113,4 +113,9 @@ class RunFolder {
     double time_ = 0;
 };
 
+/// Throws InputError if the arrays of a checkpoint exceed the process's limit of file sizes.
+/// Collective.
+void refuse_large_checkpoint(OwnState const&, Scene const&, Communicator const&,
+                             std::string const& folder);
+
 }  // namespace catena

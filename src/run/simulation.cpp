@@ -210,6 +210,9 @@ class Run {
 
     /// Opens the output at the first step, after its forces have been computed. Collective.
     void open() {
+        OwnState own = CheckpointParts(system_).own_state();
+        stepper_->save(own);
+        refuse_large_checkpoint(own, scene_, communicator_, options_.output);
         frames_.open([this] {
             if (system_.openmm() && !origin_.is_restart())
                 record_.start.forces = look_at_start(system_);

@@ -164,18 +164,21 @@ void note_three_letters(std::string const& text, std::string const& letters, Nod
                     source.path(), letters.size(), letters[0], letters[1], letters[2]));
 }
 
-/// Notes sequences of proteins that are most likely RNA without U, or DNA.
+/// Notes sequences of proteins that may be RNA without U, such as poly-A, or DNA.
 void note_nucleotides(std::string const& letters, Node const& source, ResidueTable const& table,
                       Scene& scene) {
     ResidueType const* const first = table.find('A');
     if (!first || first->name != "ALA" || letters.size() < 8 ||
         letters.find_first_not_of("ACGT") != std::string::npos)
         return;
+    bool const poly_a = letters.find_first_not_of('A') == std::string::npos;
     for (char const base : {'A', 'C', 'G'})
-        if (letters.find(base) == std::string::npos) return;
-    scene.note(fmt::format("`{}` has the letters {} alone and is read as a protein: {}",
-                           source.path(),
-                           letters.find('T') == std::string::npos ? "A, C and G" : "A, C, G and T",
+        if (!poly_a && letters.find(base) == std::string::npos) return;
+    char const* const found = poly_a                                   ? "letter A"
+                              : letters.find('T') == std::string::npos ? "letters A, C and G"
+                                                                       : "letters A, C, G and T";
+    scene.note(fmt::format("`{}` has the {} alone and is read as a protein: {}", source.path(),
+                           found,
                            "RNA takes `model: calvados_rna` and the letter U, DNA has no model"));
 }
 

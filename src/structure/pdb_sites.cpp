@@ -154,13 +154,16 @@ class Selection {
             fail(at_,
                  fmt::format("residue {} of `{}` has no CA atom ({})", name_of(residue), made.file,
                              place_of(residue.front())),
-                 "add it, or take the residue out of the file");
+                 is_nucleotide(residue.front().residue)
+                     ? nucleotide_remedy
+                     : "add it, or take the residue out of the file");
         for (PdbAtom const* const atom : found)
             if (atom->name != found.front()->name)
                 fail(at_,
                      fmt::format("residue {} of `{}` has several atoms and none is its only CA",
                                  name_of(residue), made.file),
-                     "keep one atom per residue");
+                     is_nucleotide(residue.front().residue) ? nucleotide_remedy
+                                                            : "keep one atom per residue");
         for (auto a = found.begin(); a != found.end(); ++a)
             for (auto b = found.begin(); b != a; ++b)
                 if ((*a)->alternate == (*b)->alternate)

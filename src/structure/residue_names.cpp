@@ -100,4 +100,14 @@ bool is_amino_acid(std::string_view name) {
     return kind == ResidueKind::amino_acid || kind == ResidueKind::charged;
 }
 
+bool is_nucleotide(std::string_view name) {
+    while (!name.empty() && name.front() == ' ') name.remove_prefix(1);
+    while (!name.empty() && name.back() == ' ') name.remove_suffix(1);
+    bool const has_end = name.size() > 1 && (name.back() == '5' || name.back() == '3');
+    if (has_end) name.remove_suffix(1);
+    bool const has_kind = name.size() == 2 && (name[0] == 'D' || name[0] == 'R');
+    if (has_kind) name.remove_prefix(1);
+    return name.size() == 1 && std::string_view("ACGTUI").find(name[0]) != std::string_view::npos;
+}
+
 }  // namespace catena::scene

@@ -159,6 +159,19 @@ void Joinings::refuse_gap(int p, int first, double temperature, std::string cons
     auto const high =
         std::find_if(to_lower_.begin() + std::min(p + 2, static_cast<int>(to_lower_.size())),
                      to_lower_.end(), [&](auto const& lower) { return lower.contains(p); });
+    bool const is_bridged =
+        std::any_of(to_lower_.begin() + p, to_lower_.end(), [&](auto const& lower) {
+            return std::any_of(lower.begin(), lower.end(), [&](auto const& joined) {
+                return joined.first >= first && joined.first < p;
+            });
+        });
+    if (high != to_lower_.end() && !is_bridged)
+        throw InputError(
+            fmt::format("no bond and no constraint joins particle {} (from 0) or a later one to an "
+                        "earlier one of its chain: these are two chains, such as the strands of "
+                        "double-stranded RNA",
+                        p),
+            at, "write a line TER, or another chain's letter, before it in the topology");
     if (high != to_lower_.end())
         throw InputError(
             fmt::format("particle {} (from 0) is joined to particle {} and to no earlier one", p,

@@ -1,8 +1,11 @@
 // Contact maps against all pairs, density profiles against known phases, kinds of chains.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "analysis/analysis.hpp"
 #include "analysis/contacts.hpp"
 #include "analysis/density.hpp"
 #include "error.hpp"
@@ -191,6 +194,68 @@ TEST(Density, ASlabHasTheConcentrationsItWasDrawnWith) {
         EXPECT_NEAR(mass, 1000, 1e-9);
         EXPECT_NEAR(profile.z(0), -49.75, 1e-12);
     }
+}
+
+/// The analysis of single sites, drawn anew in every frame, in a box of 10 x 10 x 60 nm.
+template <class Draw>
+Analysis analysis_of(std::size_t sites, Draw const& draw, Options const& options = {}) {
+    Topology topology = test::topology_of(std::vector<std::int64_t>(sites, 1));
+    topology.box = Vec3{{10, 10, 60}};
+    std::vector<std::int64_t> steps(40);
+    std::iota(steps.begin(), steps.end(), 0);
+    std::vector<double> const times(steps.begin(), steps.end());
+    auto const read = [&](std::size_t, Snapshot& into) {
+        into.box = topology.box;
+        into.position.clear();
+        for (std::size_t k = 0; k < sites; ++k) into.position.push_back(draw(k));
+    };
+    return analyse(FrameSource{"drawn", topology, true, false, steps, times, read}, options);
+}
+
+bool has_phases(Analysis const& found) {
+    return std::any_of(
+        found.quantities.begin(), found.quantities.end(),
+        [](Quantity const& quantity) { return quantity.name == "dense_concentration"; });
+}
+bool says(Analysis const& found, std::string const& part) {
+    return std::any_of(found.notes.begin(), found.notes.end(), [&](std::string const& note) {
+        return note.find(part) != std::string::npos;
+    });
+}
+
+TEST(Slab, FillsTheBoxAcrossItsAxis) {
+    test::RandomChains draw(5);
+    auto const slab = [&](std::size_t k) {
+        double const thick = k % 20 == 0 ? 60 : 12;
+        return Vec3{{10 * draw.uniform(), 10 * draw.uniform(), thick * (draw.uniform() - 0.5)}};
+    };
+    Analysis const found = analysis_of(400, slab);
+    EXPECT_TRUE(has_phases(found));
+    EXPECT_FALSE(says(found, "does not fill") || says(found, "so few chains"));
+}
+
+TEST(Slab, ADropletInALongBoxIsNone) {
+    test::RandomChains draw(6);
+    auto const droplet = [&](std::size_t) {
+        return Vec3{{9, 1, 0}} + 4 * std::cbrt(draw.uniform()) * draw.direction();
+    };
+    Analysis const found = analysis_of(400, droplet);
+    EXPECT_FALSE(has_phases(found));
+    EXPECT_TRUE(says(found, "does not fill the box across the axis"));
+    EXPECT_TRUE(says(found, "--slab z gives them nevertheless"));
+    Options asked;
+    asked.slab = 2;
+    Analysis const forced = analysis_of(400, droplet, asked);
+    EXPECT_TRUE(has_phases(forced));
+    EXPECT_TRUE(says(forced, "the concentrations may not be those of two phases"));
+}
+
+TEST(Slab, FewChainsInALongBoxAreNoneByChance) {
+    test::RandomChains draw(7);
+    auto const even = [&](std::size_t) {
+        return Vec3{{10 * draw.uniform(), 10 * draw.uniform(), 60 * draw.uniform()}};
+    };
+    for (std::size_t const sites : {6, 12, 100}) EXPECT_FALSE(has_phases(analysis_of(sites, even)));
 }
 
 TEST(Density, FitsFindTheProfileTheyAreGiven) {

@@ -76,6 +76,18 @@ TEST(Process, ALimitOfFileSizesEndsARunWithOneLine) {
     EXPECT_TRUE(fs::exists(folder / "m/checkpoint.h5"));
 }
 
+/// The only checkpoint would come after all steps.
+TEST(Process, ALimitBelowACheckpointIsToldBeforeTheFirstStep) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "s.yaml")
+        << "chains: [{generator: {freely_jointed: {beads: 2000, length: 0.5, mass: 100}}}]\n"
+           "dynamics: {integrator: rattle, step: 0.001, steps: 1e9}\n";
+    Ended const e = shell("ulimit -f 64; $catena run s.yaml --quiet --output m", folder / "");
+    expect_refused(e, 2, "a checkpoint takes ");
+    EXPECT_NE(e.err.find("(m/checkpoint.h5): raise it"), std::string::npos) << e.err;
+    EXPECT_FALSE(fs::exists(folder / "m/trajectory.h5md"));
+}
+
 TEST(Process, SignalsOfTerminalsAndBatchSystemsStopARunWithACheckpoint) {
     for (std::string const name : {"HUP", "XCPU"}) {
         TemporaryFolder const folder;

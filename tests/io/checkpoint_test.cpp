@@ -167,7 +167,20 @@ TEST(Checkpoint, MissingAndForeignFilesAreRefused) {
     make_trajectory(folder / "trajectory.h5md", {}, false, false, {})->close();
     EXPECT_NE(refusal(folder / "trajectory.h5md").find("not a checkpoint of Catena"),
               std::string::npos);
-    EXPECT_NE(refusal(folder.path()).find("not a checkpoint"), std::string::npos);
+    EXPECT_EQ(refusal(folder.path()), "a folder, not a checkpoint (" + folder.path() +
+                                          "): name the checkpoint.h5 of a run");
+}
+
+TEST(Checkpoint, AFolderIsToldTheCheckpointThatItHolds) {
+    TemporaryFolder const folder;
+    write_checkpoint(folder / "checkpoint.previous.h5", sample());
+    auto const expect_named = [&](char const* name) {
+        EXPECT_EQ(refusal(folder.path()),
+                  "a folder, not a checkpoint (" + folder.path() + "): name " + (folder / name));
+    };
+    expect_named("checkpoint.previous.h5");
+    write_checkpoint(folder / "checkpoint.h5", sample());
+    expect_named("checkpoint.h5");
 }
 
 TEST(Checkpoint, KeysThatAreNoNamesAreRefused) {

@@ -88,8 +88,7 @@ def starts_from_a_frame(scene, frame, whole, folder):
     catena("run", scene, "--output", output, "--quiet", "--steps", "0", "--set", f"start={{from: {frame}}}")
     with h5py.File(os.path.join(output, "trajectory.h5md")) as file:
         check(np.abs(file["particles/trajectory/position/value"][0] - whole[-1]).max() < 1e-9, "a frame as start changes positions")
-    other = write(folder, "another", crosslinks="[[5, 10, 0.7]]")
-    refused("has other cross-links in", "check", other, "--set", f"start={{from: {frame}}}")
+    starts_from_a_frame_without_its_crosslinks(frame, folder)
     reordered = write(folder, "reordered")  # the order of the list does not count
     with open(reordered) as file:
         text = file.read().replace("[[1, 30, 0.5], [5, 20, 0.6]]", "[[20, 5, 0.6], [30, 1, 0.5]]")
@@ -97,6 +96,22 @@ def starts_from_a_frame(scene, frame, whole, folder):
         file.write(text)
     told = catena("check", reordered, "--set", f"start={{from: {frame}}}")
     check("to close cross-links" not in told, f"a note tells of the start that the frame replaces: {told}")
+
+
+def starts_from_a_frame_without_its_crosslinks(frame, folder):
+    """Lengths come from the scene, whose beads are pulled together; a length that the frame's run did not hold is not taken from it."""
+    other = write(folder, "another", crosslinks="[[5, 10, 1.9], [5, 9]]")
+    start = ("--set", f"start={{from: {frame}}}")
+    output = os.path.join(folder, "pulled")
+    told = catena("run", other, "--output", output, "--steps", "0", *start)
+    check("2 of 4 chains have other cross-links in" in told and "`star-1`, has 1 there and 2 here" in told, told)
+    with h5py.File(os.path.join(output, "trajectory.h5md")) as file:
+        x = file["particles/trajectory/position/value"][0]
+    for a, b, length in ((34, 38, 0.7), (34, 39, 1.9)):
+        check(abs(np.linalg.norm(x[a] - x[b]) - length) < 1e-9, f"cross-link {a}-{b}: {np.linalg.norm(x[a] - x[b])}")
+    missing = write(folder, "missing", crosslinks="[[5, 10]]")
+    refused("the cross-link of beads 5 and 10 has no length, and `", "check", missing, *start)
+    catena("check", write(folder, "fewer", crosslinks="[]"), *start)
 
 
 def open_lengths_are_those_of_the_frame(folder):
@@ -219,6 +234,25 @@ def redundant_links_of_alike_chains_are_noted_once(folder):
     check(told.count("1 of the 10 links of chain `A` is redundant") == 1 and "chain `B`" not in told, told)
 
 
+def a_frame_without_crosslinks_is_relaxed(folder):
+    """Beads with forces that a frame has far apart are pulled together if the scene asks for it."""
+    scene = os.path.join(folder, "bridge.yaml")
+    with open(scene, "w") as file:
+        file.write("chains: [{name: p, sequence: GSCEELRKGSKEELRCGS, model: calvados2}]\n"
+                   "forces: {openmm: {builder: calvados2, ionic_strength: 0.15, ph: 7, platform: Reference}}\n"
+                   "dynamics: {integrator: g-baoab, step: 0.01, steps: 100, temperature: 300, friction: 0.1, seed: 2}\noutput: {every: 50}\n")
+    output = os.path.join(folder, "bridge-run")
+    catena("run", scene, "--output", output, "--quiet")
+    with open(scene) as file:
+        bridged = file.read().replace("calvados2}]", "calvados2, crosslinks: [[3, 16, 0.55]]}]")
+    scene = os.path.join(folder, "bridged.yaml")
+    with open(scene, "w") as file:
+        file.write(f"{bridged}start: {{from: {output}}}\n")
+    refused("write `relax: true`, or give a frame that fits", "check", scene)
+    told = catena("run", scene, "--output", os.path.join(folder, "bridged"), "--set", "relax=true")
+    check("1 of 1 chains has other cross-links in" in told and "INVALID" not in told, told)
+
+
 def the_protein_is_valid(inputs, folder):
     scene = os.path.join(inputs, "cross-linked.yaml")
     told = catena("check", scene)
@@ -246,6 +280,7 @@ def main():
         if openmm:
             a_constrained_system_runs(folder)
             redundant_links_of_alike_chains_are_noted_once(folder)
+            a_frame_without_crosslinks_is_relaxed(folder)
             the_protein_is_valid(inputs, folder)
     print("check, plan, solve, run, restart, topologies and Systems of cross-linked chains are as they should be")
 

@@ -107,6 +107,16 @@ TEST(CrossLinksOfAScene, HaveProjectedHandlesInAdviceToo) {
               std::string::npos);
 }
 
+TEST(CrossLinksOfAScene, TrajectoriesLeaveTheirForcesOutAndANoteSaysSo) {
+    auto const is_said = [](std::string const& crosslinks, char const* output) {
+        return notes(parse_scene(square(crosslinks) + output, "s.yaml"),
+                     "`joint_forces` leaves out the forces of cross-links");
+    };
+    EXPECT_TRUE(is_said("crosslinks: [[1, 4]]", "\noutput: {joint_forces: true}"));
+    EXPECT_FALSE(is_said("crosslinks: [[1, 4]]", ""));
+    EXPECT_FALSE(is_said("crosslinks: []", "\noutput: {joint_forces: true}"));
+}
+
 TEST(CrossLinksOfAScene, TheFingerprintCoversThem) {
     std::string const none = parse_scene(square(""), "s.yaml").hash,
                       one = parse_scene(square("crosslinks: [[1, 4]]"), "s.yaml").hash,

@@ -28,6 +28,16 @@ TEST_F(SceneFiles, bad_pdb_files) {
     refused(atom(1, "N", "GLY", 'A', 1, 0) + atom(2, "C", "GLY", 'A', 1, 1),
             "residue GLY 1 of chain A of `a.pdb` has several atoms and none is its only CA" +
                 where + "keep one atom per residue");
+    std::string const rna =
+        "name a chain of amino acids by `chain`, or take nucleic acids out of the file; RNA takes "
+        "its `sequence` and `model: calvados_rna`";
+    refused(atom(1, "P", "A", 'A', 1, 0) + atom(2, "C1'", "A", 'A', 1, 3),
+            "residue A 1 of chain A of `a.pdb` has several atoms and none is its only CA" + where +
+                rna);
+    refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "P", "DG5", 'A', 2, 1),
+            "residue DG5 2 of chain A of `a.pdb` has no CA atom (line 2)" + where + rna);
+    refused(atom(1, "CA", "U", 'A', 1, 0),
+            "`U 1` is not a residue of calvados2 (s.yaml: chains[0].pdb, bead 1, line 1): " + rna);
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 1),
             "`a.pdb` holds 2 chains: A (residue 1), B (residue 1)" + where +
                 "choose one, such as `chain: A`, or write `chain: all`");

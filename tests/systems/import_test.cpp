@@ -440,6 +440,21 @@ TEST_F(Import, BeadsThatHangOnLaterOnesAreRefused) {
               "(TER): the other bonds then stay springs");
 }
 
+/// Two strands in one chain of the topology, with a branch as nucleotides have it.
+TEST_F(Import, TwoChainsInOneAreToldWhereToCutThem) {
+    system = bare_system(beads);
+    bonds = new OpenMM::HarmonicBondForce;
+    system->addForce(bonds);
+    bonds->addBond(1, 2, 0.4, stiff);
+    bonds->addBond(1, 3, 0.4, stiff);
+    join_glycines();
+    EXPECT_EQ(complaint([&] { import(wound(beads, 1)); }),
+              "no bond and no constraint joins particle 1 (from 0) or a later one to an earlier "
+              "one of its chain: these are two chains, such as the strands of double-stranded RNA "
+              "(scene.yaml: forces.openmm.system, chain A, body 2): write a line TER, or another "
+              "chain's letter, before it in the topology");
+}
+
 /// Without a topology the bonds tell the chains apart, branched ones too.
 TEST_F(Import, ChainsByBondsHoldTheirBranches) {
     bonds->setBondParameters(1, 3, 1, 0.41, stiff);
