@@ -1,8 +1,6 @@
 // Implements `catena check`.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "command/commands.hpp"
 #include "console/long_task.hpp"
 #include "console/terminal.hpp"
