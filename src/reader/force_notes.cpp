@@ -201,7 +201,7 @@ ShownStep shown_step(Scene const& scene) {
 
 std::string longer_steps(Scene const& scene) {
     DynamicsSpec const& run = scene.dynamics;
-    if (!run.given || run.integrator != Integrator::g_baoab || !scene.forces.openmm ||
+    if (!run.given || !is_langevin(run.integrator) || !scene.forces.openmm ||
         scene.forces.openmm->builder.empty() || !is_as_slow(scene, fastest_bead(scene)))
         return {};
     ShownStep const shown = shown_step(scene);
