@@ -13,7 +13,7 @@
 #SBATCH --open-mode=append
 set -euo pipefail
 # shellcheck source=jobs/cluster.sh
-source "${CATENA_ROOT:-$SLURM_SUBMIT_DIR}/jobs/cluster.sh"
+source "${CATENA_ROOT:-${SLURM_SUBMIT_DIR:?is set by sbatch: submit this script, or set CATENA_ROOT}}/jobs/cluster.sh"
 [ $# -ge 2 ] || fail "usage: sbatch --array=1-N jobs/slurm-array.sh SCENE|SCENES FOLDER [options]"
 choose_task "$1" "$2" "$SLURM_ARRAY_TASK_ID"
 shift 2

@@ -11,5 +11,5 @@
 #SBATCH --open-mode=append
 set -euo pipefail
 # shellcheck source=jobs/cluster.sh
-source "${CATENA_ROOT:-$SLURM_SUBMIT_DIR}/jobs/cluster.sh"
+source "${CATENA_ROOT:-${SLURM_SUBMIT_DIR:?is set by sbatch: submit this script, or set CATENA_ROOT}}/jobs/cluster.sh"
 run_to_the_end "$@"

@@ -13,8 +13,8 @@ namespace catena::command {
 namespace {
 
 /// Bounds of the options: ps, and number of steps between samples.
-constexpr double longest_step = 10, longest_time = 1e9;  // ps
-constexpr double most_steps = 1e9;                       // between samples
+constexpr double longest_step = 1, longest_time = 1e9;  // ps
+constexpr double most_steps = 1e9;                      // between samples
 
 /// Throws InputError if an option of `bench sampling` was given for another benchmark.
 void refuse_for(SamplingOptionTexts const& words, std::string const& name) {
@@ -33,6 +33,15 @@ void refuse_for(SamplingOptionTexts const& words, std::string const& name) {
                 fmt::format("catena bench {1} does not take {0}",
                             option == std::string("SCENE") ? "`" + given + "`" : option, name),
                 "command line", "leave it out");
+}
+
+/// Returns a value of --steps in ps; throws InputError for one that looks like femtoseconds.
+double step_of(std::string const& text) {
+    double const step = number_between("--steps", text, 1e-6, longest_time);
+    if (step > longest_step)
+        throw InputError(fmt::format("{:.6g} ps is {:.6g} fs", step, 1000 * step), "--steps",
+                         "give time steps in ps, such as 0.01");
+    return step;
 }
 
 }  // namespace
@@ -83,7 +92,7 @@ SamplingOptions sampling_options(SamplingOptionTexts const& words, std::string c
     if (!words.steps.empty()) {
         options.steps.clear();
         for (std::string const& step : comma_list("--steps", words.steps))
-            options.steps.push_back(number_between("--steps", step, 1e-6, longest_step));
+            options.steps.push_back(step_of(step));
     }
     auto const take = [](std::string const& option, std::string const& word, double least,
                          double& value) {

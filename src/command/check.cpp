@@ -1,8 +1,6 @@
 // Implements `catena check`.
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "command/commands.hpp"
 #include "console/long_task.hpp"
 #include "console/terminal.hpp"
@@ -54,19 +52,6 @@ Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
     for (terms::TermCount const& each : loads_of(scene)) forces[each.name] = each.count;
     forces["openmm"] = openmm;
     return forces;
-}
-
-/// Tells of longer steps that sample the scene as well; empty if there are none.
-std::string step_advice(Scene const& scene) {
-    DynamicsSpec const& d = scene.dynamics;
-    bool const of_residues = scene.forces.openmm && !scene.forces.openmm->builder.empty() &&
-                             std::all_of(scene.chains.begin(), scene.chains.end(),
-                                         [](ChainSpec const& chain) { return chain.is_beads(); });
-    scene::ShownStep const shown = scene::shown_step(scene);
-    if (!d.given || d.integrator != Integrator::g_baoab || !of_residues || d.step >= shown.longest)
-        return {};
-    return fmt::format("up to {:.6g} ps sample {} within 1 % of shorter ones", shown.longest,
-                       shown.chains);
 }
 
 /// Returns the dynamics as JSON; null if the scene has none.
@@ -141,7 +126,7 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     for (std::size_t i = 0; i < openmm.size(); ++i) text.entry(i == 0 ? "OpenMM" : "", openmm[i]);
     text.heading("dynamics");
     text.entry("integrator", dynamics_text(scene));
-    if (std::string const advice = step_advice(scene); !advice.empty())
+    if (std::string const advice = scene::longer_steps(scene); !advice.empty())
         text.entry("longer steps", advice);
     if (limit) text.entry("longest stable step", catena::text_of(*limit, scene));
     text.heading("memory");

@@ -62,7 +62,8 @@ OutputFile OutputFile::create(std::string const& file) {
 }
 
 OutputFile OutputFile::create_anew(std::string const& file) {
-    if (::unlink(file.c_str()) != 0 && errno != ENOENT) fail("remove the old file", file, errno);
+    if (::unlink(file.c_str()) != 0 && errno != ENOENT)
+        fail(errno == EROFS ? "write" : "remove the old file", file, errno);
     return {open_file(file, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW), file};
 }
 

@@ -13,6 +13,7 @@
 
 #include "scene/branches.hpp"
 #include "structure/calvados2.hpp"
+#include "structure/calvados_rna.hpp"
 #include "structure/residue_names.hpp"
 #include "systems/charges.hpp"
 
@@ -33,6 +34,8 @@ double constexpr same_temperature = 1e-9;
 
 /// Shortest and longest plausible step of residues with friction, ps.
 double constexpr shortest_usual_step = 0.001, longest_usual_step = 0.2;
+/// A step below this is taken for one in seconds, ps.
+double constexpr least_step = 1e-9, picoseconds_a_second = 1e12;
 /// Mass of the lightest residue in amu and length of a link in nm for which that step was shown.
 double constexpr shown_mass = 57.05, shown_link = 0.38;
 /// Relative difference of masses and lengths that leaves the step as it is.
@@ -131,49 +134,91 @@ void note_forces(Scene& scene) {
 
 namespace {
 
+/// Value that may have been meant by `step` in another unit; empty if it is none that is usual.
+std::string meant(double step) {
+    return step < shortest_usual_step || step > longest_usual_step
+               ? ""
+               : fmt::format(" Did you mean {:.6g}?", step);
+}
+
 /// Sentence on a step of chains like those whose steps were shown; empty if it needs none.
 std::string step_of_residues(double step, ShownStep const& shown) {
     if (step > longest_usual_step)
         return fmt::format(
             "dynamics.step is {:.6g} ps, that is {:.6g} fs: steps of such chains are "
             "0.01 to 0.06 ps.{}",
-            step, 1000 * step,
-            step / 1000 < shortest_usual_step ? ""
-                                              : fmt::format(" Did you mean {:.6g}?", step / 1000));
+            step, 1000 * step, meant(step / 1000));
+    if (step < least_step)
+        return fmt::format(
+            "dynamics.step is {:.6g} ps: steps of such chains are 0.01 to 0.06 ps.{}", step,
+            meant(step * picoseconds_a_second));
     if (step <= shown.longest) return "";
+    if (!shown.compared)
+        return fmt::format(
+            "dynamics.step is {:.6g} fs: {} was simulated with steps up to {:.6g} fs, longer ones "
+            "were not compared.",
+            1000 * step, shown.chains, 1000 * shown.longest);
     return fmt::format(
         "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to sample {} correctly, "
         "longer ones were not.",
         1000 * step, 1000 * shown.longest, shown.chains);
 }
 
-/// The same for a System's beads of other masses and distances.
-std::string step_of_others(double step, ShownStep const& of_residues, FastestBead const& fastest) {
+/// The same for beads of other masses and distances.
+std::string step_of_others(double step, ShownStep const& of_residues, FastestBead const& fastest,
+                           bool of_a_system) {
     double const shown = of_residues.longest * fastest.scale;
     if (step <= shown) return "";
     return fmt::format(
         "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown for residues, which are "
-        "{:.2g} fs for the System's beads of {:.4g} amu on links of {:.4g} nm.",
-        1000 * step, 1000 * of_residues.longest, 1000 * shown, fastest.mass, fastest.length);
+        "{:.2g} fs for {}beads of {:.4g} amu on links of {:.4g} nm.",
+        1000 * step, 1000 * of_residues.longest, 1000 * shown, of_a_system ? "the System's " : "",
+        fastest.mass, fastest.length);
+}
+
+/// True if the scene's residues move as slowly as those whose steps were shown.
+bool is_as_slow(Scene const& scene, FastestBead const& fastest) {
+    return std::isinf(fastest.scale) || std::abs(fastest.scale - 1) < similar ||
+           (fastest.scale > 1 && (!scene.forces.openmm->builder.empty() || has_amino_acids(scene)));
+}
+
+bool is_rna(ChainSpec const& chain) {
+    auto const& residues = residues_of(chain);
+    return std::find(residues.begin(), residues.end(), calvados_rna::backbone) != residues.end();
 }
 
 }  // namespace
 
 ShownStep shown_step(Scene const& scene) {
-    return scene.box && scene.chains.size() > 1 ? ShownStep{0.04, "condensates and slabs"}
-                                                : ShownStep{0.06, "chains of beads"};
+    auto const& chains = scene.chains;
+    if (std::any_of(chains.begin(), chains.end(), is_rna)) return {0.01, "RNA", false};
+    if (!std::all_of(chains.begin(), chains.end(),
+                     [](ChainSpec const& chain) { return chain.is_beads(); }))
+        return {0.02, "rigid domains"};
+    return scene.box && chains.size() > 1 ? ShownStep{0.04, "condensates and slabs"}
+                                          : ShownStep{0.06, "chains of beads"};
+}
+
+std::string longer_steps(Scene const& scene) {
+    DynamicsSpec const& run = scene.dynamics;
+    if (!run.given || !is_langevin(run.integrator) || !scene.forces.openmm ||
+        scene.forces.openmm->builder.empty() || !is_as_slow(scene, fastest_bead(scene)))
+        return {};
+    ShownStep const shown = shown_step(scene);
+    if (!shown.compared || run.step >= shown.longest) return {};
+    return fmt::format("up to {:.6g} ps sample {} within 1 % of shorter ones", shown.longest,
+                       shown.chains);
 }
 
 void note_step(Scene& scene) {
     DynamicsSpec const& run = scene.dynamics;
     if (!scene.forces.openmm || !run.given || scene.si || is_implicit(run.integrator)) return;
     FastestBead const fastest = fastest_bead(scene);
-    bool const alike = !scene.forces.openmm->builder.empty() || std::isinf(fastest.scale) ||
-                       std::abs(fastest.scale - 1) < similar ||
-                       (fastest.scale > 1 && has_amino_acids(scene));
     ShownStep const shown = shown_step(scene);
     std::string const note =
-        alike ? step_of_residues(run.step, shown) : step_of_others(run.step, shown, fastest);
+        is_as_slow(scene, fastest)
+            ? step_of_residues(run.step, shown)
+            : step_of_others(run.step, shown, fastest, scene.forces.openmm->builder.empty());
     if (!note.empty()) scene.note(note);
 }
 

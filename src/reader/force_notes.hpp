@@ -21,10 +21,14 @@ void note_forces(Scene&);
 struct ShownStep {
     double longest;  // ps
     char const* chains;
+    /// True if the samples were within 1 % of those of shorter steps.
+    bool compared = true;
 };
-/// Returns the step shown for chains as dense as the scene's. At 60 fs a slab of glycine-rich
-/// chains failed within a nanosecond.
+/// Returns the step shown for chains of the scene's kind and density. At 60 fs a slab of
+/// glycine-rich chains failed within a nanosecond.
 ShownStep shown_step(Scene const&);
+/// Tells of longer steps that sample the scene as well; empty if there are none.
+std::string longer_steps(Scene const&);
 
 /// Notes a step that is implausible, or beyond those that were shown to sample chains correctly. A
 /// System's beads are judged by their masses and the lengths of their links. Precondition: the

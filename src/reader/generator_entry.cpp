@@ -143,6 +143,12 @@ void GeneratorEntry::read_walk() {
     request_.allow(worm ? "generator `worm_like`" : "generator `freely_jointed`",
                    {"positions", "links", "anchor"});
     walk.anchor = request_.anchor();
+    if (worm && request_.scene.dynamics.given && !request_.scene.forces.openmm)
+        request_.scene.note(fmt::format(
+            "generator `worm_like` gives the start alone: no force keeps the persistence length of "
+            "{:.6g} in a run, and the chain becomes a random walk. Take `elastic_rod`, or angle "
+            "forces of an OpenMM System.",
+            persistence_));
 }
 
 // Stars, brushes, dendrimers and random trees; `positions` may replace their growth.

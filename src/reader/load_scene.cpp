@@ -44,9 +44,14 @@ namespace {
 using scene::Fields;
 using scene::Node;
 
-/// Notes friction that the integrator ignores.
+/// Notes friction that the integrator ignores, or that lets no velocity outlast a step.
 void note_friction(Node const& dynamics, Scene& scene) {
     DynamicsSpec const& d = scene.dynamics;
+    if (is_langevin(d.integrator) && !scene.si && d.friction * d.step >= 1)
+        scene.note(fmt::format(
+            "dynamics.friction is a rate, {0:.6g}/ps: velocities are forgotten within a step. If "
+            "{0:.6g} ps is a damping time, write {1:.6g}.",
+            d.friction, 1 / d.friction));
     if (is_langevin(d.integrator) || !dynamics.find("friction") || d.friction == 0) return;
     scene.note(fmt::format(
         "dynamics.friction = {:g} has no effect: integrator {} has no thermostat, {} has one",

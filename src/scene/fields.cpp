@@ -90,6 +90,8 @@ std::optional<std::string> synonym(std::string_view name, KeyMap const& declared
     all.insert(all.end(), declared.later.begin(), declared.later.end());
     auto near = synonym(item.key, declared);
     if (!near) near = nearest(item.key, all);
+    if (item.key == "<<")
+        fail(item, "merge keys `<<` are not read", "write the keys out; an alias is a whole value");
     fail(item, "unknown key `" + shown(item.key) + "`",
          near ? "did you mean `" + *near + "`?" : "use one of " + joined(names));
 }

@@ -192,7 +192,30 @@ class TreeBuilder : public YAML::EventHandler {
     std::map<YAML::anchor_t, Node> anchors_;
 };
 
+/// True if blanks at the beginning of the line, counted from 1, hold a tab.
+bool begins_with_tab(std::string const& text, int line) {
+    std::size_t at = 0;
+    for (int i = 1; i < line && at != std::string::npos; ++i) {
+        at = text.find('\n', at);
+        if (at != std::string::npos) ++at;
+    }
+    if (line < 1 || at == std::string::npos) return false;
+    std::size_t const first = text.find_first_not_of(" \t", at);
+    return text.substr(at, first == std::string::npos ? first : first - at).find('\t') !=
+           std::string::npos;
+}
+
+/// Throws InputError if the text is an HDF5 file.
+void refuse_hdf5(std::string const& text, std::string const& file) {
+    if (text.starts_with("\x89HDF"))
+        throw InputError(
+            "an HDF5 file, not a scene", file,
+            "name a scene; catena run SCENE --restart FOLDER/checkpoint.h5 continues a "
+            "run");
+}
+
 Node parse_tree(std::string const& text, std::string const& file, bool lines) {
+    refuse_hdf5(text, file);
     std::istringstream stream(text);
     TreeBuilder builder(file, lines, allowed_copies(text.size()));
     try {
@@ -203,9 +226,10 @@ Node parse_tree(std::string const& text, std::string const& file, bool lines) {
             throw InputError("holds more than one YAML document", at_line(file, second.root.line),
                              "keep one document, without `---`");
     } catch (YAML::Exception const& error) {
-        throw InputError("not YAML: " + shown(error.msg),
-                         at_line(file, lines && !error.mark.is_null() ? error.mark.line + 1 : 0),
-                         "correct the syntax there or just before");
+        int const line = error.mark.is_null() ? 0 : error.mark.line + 1;
+        throw InputError("not YAML: " + shown(error.msg), at_line(file, lines ? line : 0),
+                         begins_with_tab(text, line) ? "indent with blanks instead of tabs"
+                                                     : "correct the syntax there or just before");
     }
     return std::move(builder.root);
 }

@@ -174,6 +174,8 @@ TEST(Sampling, WhatCannotBeSampledIsRefused) {
                    "did you mean `bonds`?");
     expect_refused(catena({"bench", "sampling", "--steps", "0.01,fast"}), 2,
                    "`fast` is not a number (--steps)");
+    expect_refused(catena({"bench", "sampling", "--steps", "0.01,20"}), 2,
+                   "20 ps is 20000 fs (--steps): give time steps in ps, such as 0.01");
     expect_refused(catena({"bench", "sampling", "--copies", "0"}), 2, "--copies");
     expect_refused(catena({"bench", "sampling", "--duration", "1", "--every", "50"}), 2,
                    "50 ps between samples are more than the 1 ps");
@@ -189,6 +191,9 @@ TEST(Sampling, WhatCannotBeSampledIsRefused) {
                    "catena bench openmm does not take `scene.yaml`");
     expect_refused(catena({"bench", "sampling", input("several-chains.yaml")}), 2,
                    "leave the others out");
+    expect_refused(catena({"bench", "sampling", input("several-chains.yaml"), "--set",
+                           "place={slab: {axis: z, thickness: 9}}"}),
+                   2, "leave the others out");
     expect_refused(catena({"bench", "sampling", input("arm.yaml")}), 2, "takes a free chain");
     std::string const scene = input("alpha-synuclein.yaml");
     expect_refused(catena({"bench", "sampling", scene, "--set", "forces.gravity=[0, 0, -1]"}), 2,
