@@ -182,7 +182,7 @@ bool is_as_slow(Scene const& scene, FastestBead const& fastest) {
            (fastest.scale > 1 && (!scene.forces.openmm->builder.empty() || has_amino_acids(scene)));
 }
 
-bool is_rna(ChainSpec const& chain) {
+bool has_nucleotides(ChainSpec const& chain) {
     auto const& residues = residues_of(chain);
     return std::find(residues.begin(), residues.end(), calvados_rna::backbone) != residues.end();
 }
@@ -191,7 +191,7 @@ bool is_rna(ChainSpec const& chain) {
 
 ShownStep shown_step(Scene const& scene) {
     auto const& chains = scene.chains;
-    if (std::any_of(chains.begin(), chains.end(), is_rna)) return {0.01, "RNA", false};
+    if (std::any_of(chains.begin(), chains.end(), has_nucleotides)) return {0.01, "RNA", false};
     if (!std::all_of(chains.begin(), chains.end(),
                      [](ChainSpec const& chain) { return chain.is_beads(); }))
         return {0.02, "rigid domains"};

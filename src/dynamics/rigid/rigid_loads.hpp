@@ -97,6 +97,9 @@ struct RigidLoadsIn {
           torque(group.size),
           joint_torque(given.joint_loads ? group.size : 0) {}
 
+    /// True if loads of a joint depend on the orientation of its inboard body.
+    bool read_inboard_bodies() const { return given.springs; }
+
     BodyLoads given;
     BodyLoadsIn<Space> in_space;
     CarriedBeadsIn<Space> beads;

@@ -12,7 +12,7 @@ template <class Space>
 void update_configuration(RigidBodies<Space>& bodies) {
     Space const& space = bodies.space;
     ChainGroup const& group = bodies.group;
-    if (bodies.loads.given.springs)
+    if (bodies.loads.read_inboard_bodies())
         exchange_from_inboard(bodies.communicator, group, bodies.state.orientation.view(), space);
     if (bodies.rotors)
         space.for_each(group.size, [j = bodies.joints()] CATENA_LAMBDA(std::int64_t k) {
