@@ -201,8 +201,8 @@ ShownStep shown_step(Scene const& scene) {
     if (!std::all_of(chains.begin(), chains.end(),
                      [](ChainSpec const& chain) { return chain.is_beads(); }))
         return {0.02, "rigid domains"};
-    return scene.box && chains.size() > 1 ? ShownStep{0.04, "condensates and slabs"}
-                                          : ShownStep{0.06, "chains of beads", StepEvidence::shown};
+    if (scene.chains_a_replica() == 1) return {0.06, "chains of beads", StepEvidence::shown};
+    return {0.04, scene.box ? "condensates and slabs" : "chains that may meet"};
 }
 
 std::string longer_steps(Scene const& scene) {

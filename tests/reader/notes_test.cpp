@@ -46,6 +46,10 @@ TEST(StepNotes, OfSingleChainsAndOfBoxes) {
         "dynamics.step is 50 fs: no bias of condensates and slabs was found up to 40 fs, within "
         "errors of 1 %, longer steps are not advised.");
     EXPECT_EQ(of_step(residues(peptide, "0.05")), "");
+    // Chains without a box may meet, replicas of one chain do not.
+    EXPECT_EQ(longer(residues(two, "0.01")),
+              "up to 0.04 ps no bias of chains that may meet was found, within errors of 1 %");
+    EXPECT_EQ(of_step(residues(peptide, "0.05", "replicas: 3")), "");
 }
 
 TEST(StepNotes, OfRnaPromiseNothing) {
