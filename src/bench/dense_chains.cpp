@@ -12,6 +12,7 @@
 #include "console/text.hpp"
 #include "error.hpp"
 #include "integrate/system_chains.hpp"
+#include "math/concentration_units.hpp"
 #include "neighbours/grid.hpp"
 #include "reader/load_scene.hpp"
 #include "start/start_relaxation.hpp"
@@ -22,8 +23,6 @@ namespace {
 /// Distances, nm, within which pairs of beads are counted: on the steep side of the repulsion, and
 /// up to the end of the first shell of neighbours.
 constexpr double steep_side = 0.5, first_shell = 0.8;
-/// Grams per litre in 1 amu/nm^3.
-constexpr double milligrams_per_millilitre = 1.66053906660;
 /// A box is long if its longest edge has at least this multiple of each other.
 constexpr double long_multiple = 2;
 
@@ -156,9 +155,8 @@ std::vector<SystemValue> DenseChains::system_values(std::vector<Vec3> const& pos
                           static_cast<double>(pairs) / beads_count});
     }
     if (std::optional<int> const axis = long_axis(box))
-        values.push_back(
-            {"density seen", "mg/ml",
-             milligrams_per_millilitre * density_seen(positions, beads().mass, box, *axis)});
+        values.push_back({"density seen", "mg/ml",
+                          mg_per_ml * density_seen(positions, beads().mass, box, *axis)});
     return values;
 }
 

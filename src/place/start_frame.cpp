@@ -136,6 +136,10 @@ class FrameStart {
             site += count;
         }
         fit.note();
+        if (others_pulled_ > 0)
+            scene_.note(fmt::format("cross-links move beads of {} more {} by up to {:.3g} {}",
+                                    others_pulled_, others_pulled_ == 1 ? "copy" : "copies",
+                                    farthest_pulled_, scene_.si ? "m" : "nm"));
         if (misfit_ > noted_misfit)
             scene_.note(
                 fmt::format("rigid domains keep the scene's shape and were laid on the "
@@ -199,17 +203,31 @@ class FrameStart {
         std::array<std::int64_t, 2> const ends{link.inboard, link.outboard};
         return std::find(there.begin(), there.end(), ends) != there.end();
     }
-    /// Gives cross-links their lengths. Redundant links are noted once for all copies of a chain;
-    /// those of an imported System have been noted.
+    /// Gives cross-links their lengths. Notes are those of the first copy of a chain; redundant
+    /// links of an imported System have been noted.
     void close_crosslinks(Draft& draft) {
-        bool const is_known = !draft.node->find("crosslinks") ||
-                              (&draft != drafts_.data() && (&draft - 1)->node == draft.node);
+        bool const is_copy = &draft != drafts_.data() && (&draft - 1)->node == draft.node;
+        std::vector<Vec3> const given = draft.chain.beads.position;
         // Without forces no overlap of beads that are pulled together does harm.
         fit_crosslinks(draft.chain, {.scene = scene_,
                                      .from = *fields_.find("from"),
                                      .far = !scene_.forces.openmm,
-                                     .is_known = is_known,
+                                     .quiet = is_copy,
+                                     .is_known = !draft.node->find("crosslinks"),
                                      .remedy = "write `relax: true`, or give a frame that fits"});
+        if (is_copy) count_pulled(draft.chain, given);
+    }
+    /// Counts a chain of which a cross-link had noticeably another length at the positions `given`.
+    void count_pulled(ChainSpec const& chain, std::vector<Vec3> const& given) {
+        if (std::none_of(chain.crosslinks.begin(), chain.crosslinks.end(), [&](CrossLink const& l) {
+                double const distance = norm(given[static_cast<std::size_t>(l.outboard)] -
+                                             given[static_cast<std::size_t>(l.inboard)]);
+                return std::abs(distance - l.length) >= noted_link_change * l.length;
+            }))
+            return;
+        ++others_pulled_;
+        for (std::size_t k = 0; k < given.size(); ++k)
+            farthest_pulled_ = std::max(farthest_pulled_, norm(chain.beads.position[k] - given[k]));
     }
     /// Lays the rigid domains of a chain on their beads and moves these onto them. Returns one
     /// motion per unit; that of a single bead is no rotation.
@@ -273,6 +291,9 @@ class FrameStart {
     /// Largest distance of a domain's bead from the frame's position, nm, and its domain.
     double misfit_ = 0;
     std::string misfit_at_;
+    /// Copies after the first whose beads cross-links pulled, and the largest way of a bead.
+    std::size_t others_pulled_ = 0;
+    double farthest_pulled_ = 0;
 };
 
 }  // namespace

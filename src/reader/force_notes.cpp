@@ -153,10 +153,15 @@ std::string step_of_residues(double step, ShownStep const& shown) {
             "dynamics.step is {:.6g} ps: steps of such chains are 0.01 to 0.06 ps.{}", step,
             meant(step * picoseconds_a_second));
     if (step <= shown.longest) return "";
-    if (!shown.compared)
+    if (shown.evidence == StepEvidence::not_compared)
         return fmt::format(
             "dynamics.step is {:.6g} fs: {} was simulated with steps up to {:.6g} fs, longer ones "
             "were not compared.",
+            1000 * step, shown.chains, 1000 * shown.longest);
+    if (shown.evidence == StepEvidence::no_bias_found)
+        return fmt::format(
+            "dynamics.step is {:.6g} fs: no bias of {} was found up to {:.6g} fs, within errors of "
+            "1 %, longer steps are not advised.",
             1000 * step, shown.chains, 1000 * shown.longest);
     return fmt::format(
         "dynamics.step is {:.6g} fs: steps up to {:.6g} fs were shown to sample {} correctly, "
@@ -191,12 +196,13 @@ bool has_nucleotides(ChainSpec const& chain) {
 
 ShownStep shown_step(Scene const& scene) {
     auto const& chains = scene.chains;
-    if (std::any_of(chains.begin(), chains.end(), has_nucleotides)) return {0.01, "RNA", false};
+    if (std::any_of(chains.begin(), chains.end(), has_nucleotides))
+        return {0.01, "RNA", StepEvidence::not_compared};
     if (!std::all_of(chains.begin(), chains.end(),
                      [](ChainSpec const& chain) { return chain.is_beads(); }))
         return {0.02, "rigid domains"};
-    return scene.box && chains.size() > 1 ? ShownStep{0.04, "condensates and slabs"}
-                                          : ShownStep{0.06, "chains of beads"};
+    if (scene.chains_a_replica() == 1) return {0.06, "chains of beads", StepEvidence::shown};
+    return {0.04, scene.box ? "condensates and slabs" : "chains that may meet"};
 }
 
 std::string longer_steps(Scene const& scene) {
@@ -205,7 +211,10 @@ std::string longer_steps(Scene const& scene) {
         scene.forces.openmm->builder.empty() || !is_as_slow(scene, fastest_bead(scene)))
         return {};
     ShownStep const shown = shown_step(scene);
-    if (!shown.compared || run.step >= shown.longest) return {};
+    if (shown.evidence == StepEvidence::not_compared || run.step >= shown.longest) return {};
+    if (shown.evidence == StepEvidence::no_bias_found)
+        return fmt::format("up to {:.6g} ps no bias of {} was found, within errors of 1 %",
+                           shown.longest, shown.chains);
     return fmt::format("up to {:.6g} ps sample {} within 1 % of shorter ones", shown.longest,
                        shown.chains);
 }

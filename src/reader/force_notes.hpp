@@ -17,12 +17,18 @@ void note_water(Scene&);
 /// strength or pH. Water outside the range of measured permittivity is noted, too.
 /// Precondition: all sections except the chains have been read.
 void note_forces(Scene&);
-/// Longest step that `catena bench sampling` showed to sample chains of residues, and which chains.
+/// What samples of chains say of a step beside shorter ones.
+enum class StepEvidence {
+    shown,          // biases are below 1 % even with two standard errors more
+    no_bias_found,  // biases and their standard errors are below 1 %, or equal to it
+    not_compared
+};
+/// Longest step with which chains of residues were sampled without a bias that was found, and which
+/// chains.
 struct ShownStep {
     double longest;  // ps
     char const* chains;
-    /// True if the samples were within 1 % of those of shorter steps.
-    bool compared = true;
+    StepEvidence evidence = StepEvidence::no_bias_found;
 };
 /// Returns the step shown for chains of the scene's kind and density. At 60 fs a slab of
 /// glycine-rich chains failed within a nanosecond.

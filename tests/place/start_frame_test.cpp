@@ -132,6 +132,22 @@ TEST_F(StartFrame, fits_the_links) {
     EXPECT_NE(refusal(yaml_ + from_).find("beads 1 and 2 of chain `p-1` are"), std::string::npos);
 }
 
+TEST_F(StartFrame, tells_once_of_cross_links_that_move_the_beads_of_copies) {
+    write({frame_of(read(yaml_))});
+    std::string bound = yaml_;
+    bound.replace(bound.find("calvados2}"), 9, "calvados2, crosslinks: [[2, 7, 0.55]]");
+    Scene const scene = read(bound + from_);
+    for (ChainSpec const& chain : scene.chains)
+        EXPECT_NEAR(norm(chain.beads.position[6] - chain.beads.position[1]), 0.55, 1e-9);
+    EXPECT_EQ(std::count_if(scene.notes.begin(), scene.notes.end(),
+                            [](std::string const& note) {
+                                return note.find("to close cross-links") != std::string::npos;
+                            }),
+              1);
+    EXPECT_TRUE(notes(scene, "chain `p-1` are"));
+    EXPECT_TRUE(notes(scene, "cross-links move beads of 1 more copy by up to"));
+}
+
 /// What the scene's own positions would have been is not reported.
 TEST_F(StartFrame, replaces_positions_and_what_was_said_of_them) {
     std::ofstream table(folder_ / "own.csv");

@@ -38,14 +38,18 @@ TEST(StepNotes, OfSingleChainsAndOfBoxes) {
     EXPECT_EQ(longer(residues(peptide, "0.01")),
               "up to 0.06 ps sample chains of beads within 1 % of shorter ones");
     EXPECT_EQ(longer(residues(two, "0.01", box)),
-              "up to 0.04 ps sample condensates and slabs within 1 % of shorter ones");
+              "up to 0.04 ps no bias of condensates and slabs was found, within errors of 1 %");
     EXPECT_EQ(longer(residues(two, "0.04", box)), "");
     EXPECT_EQ(of_step(residues(two, "0.04", box)), "");
     EXPECT_EQ(
         of_step(residues(two, "0.05", box)),
-        "dynamics.step is 50 fs: steps up to 40 fs were shown to sample condensates and slabs "
-        "correctly, longer ones were not.");
+        "dynamics.step is 50 fs: no bias of condensates and slabs was found up to 40 fs, within "
+        "errors of 1 %, longer steps are not advised.");
     EXPECT_EQ(of_step(residues(peptide, "0.05")), "");
+    // Chains without a box may meet, replicas of one chain do not.
+    EXPECT_EQ(longer(residues(two, "0.01")),
+              "up to 0.04 ps no bias of chains that may meet was found, within errors of 1 %");
+    EXPECT_EQ(of_step(residues(peptide, "0.05", "replicas: 3")), "");
 }
 
 TEST(StepNotes, OfRnaPromiseNothing) {
@@ -85,10 +89,11 @@ TEST_F(SceneFiles, steps_of_light_beads_and_rigid_domains_are_shorter) {
         return read(residues("{pdb: a.pdb, model: calvados2, rigid: [[1, 5]]}", step));
     };
     EXPECT_EQ(scene::longer_steps(domain("0.01")),
-              "up to 0.02 ps sample rigid domains within 1 % of shorter ones");
-    EXPECT_EQ(notes_of(domain("0.03")).at(0),
-              "dynamics.step is 30 fs: steps up to 20 fs were shown to sample rigid domains "
-              "correctly, longer ones were not.");
+              "up to 0.02 ps no bias of rigid domains was found, within errors of 1 %");
+    EXPECT_EQ(
+        notes_of(domain("0.03")).at(0),
+        "dynamics.step is 30 fs: no bias of rigid domains was found up to 20 fs, within errors "
+        "of 1 %, longer steps are not advised.");
 }
 
 TEST(FrictionNotes, AskWhetherADampingTimeIsMeant) {
