@@ -82,7 +82,7 @@ Json json_of(SamplingRow const* row) {
 
 /// Converts a bias to JSON.
 Json json_of(QuantityBias const& bias) {
-    return {{"percent", bias.percent}, {"error", bias.error}};
+    return {{"percent", bias.percent}, {"error", bias.error}, {"plateau", bias.known}};
 }
 
 /// Converts the verdict on a method to JSON.

@@ -12,6 +12,8 @@ namespace {
 constexpr double allowed_percent = 1;
 /// Number of chains from which the scatter of their differences gives an error.
 constexpr std::size_t chains_to_compare = 16;
+/// Part of the error of independent rows from which chains count as having forgotten the start.
+constexpr double forgotten = 0.9;
 
 /// Returns the bias of a mean relative to another, in percent of `scale`.
 QuantityBias bias_of(std::string name, Blocked const& mean, Blocked const& reference,
@@ -22,7 +24,8 @@ QuantityBias bias_of(std::string name, Blocked const& mean, Blocked const& refer
 }
 
 /// Returns the bias of the radius of gyration. All rows start alike, and chains that are slow to
-/// relax remember it: the error is that of the differences chain by chain.
+/// relax remember it: the error is that of the differences chain by chain. It is no final error as
+/// long as it is well below that of independent rows, since the bias of such chains has not shown.
 QuantityBias bias_of_gyration(SamplingRow const& row, SamplingRow const& smallest) {
     QuantityBias bias = bias_of("Rg", row.gyration, smallest.gyration, smallest.gyration.mean);
     CopySeries differences;
@@ -30,8 +33,9 @@ QuantityBias bias_of_gyration(SamplingRow const& row, SamplingRow const& smalles
          c < std::min(row.gyration_of_chains.size(), smallest.gyration_of_chains.size()); ++c)
         differences.push_back({row.gyration_of_chains[c] - smallest.gyration_of_chains[c]});
     if (differences.size() < chains_to_compare) return bias;
+    double const independent = bias.error;
     bias.error = 100 * blocked_mean(differences).error / smallest.gyration.mean;
-    bias.known = true;
+    bias.known = bias.known && bias.error >= forgotten * independent;
     return bias;
 }
 

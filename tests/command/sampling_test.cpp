@@ -159,7 +159,7 @@ TEST(Sampling, DenseChainsAreSampledInTheirBox) {
         EXPECT_LT(density, 1.66 * 14e3 / (8.2 * 8.2));
         EXPECT_GT(row.at("diffusion_of_chains").at("mean").get<double>(), 0);
     }
-    EXPECT_EQ(json.at("verdicts")[0].at("biases")[1].at("density seen").size(), 2U);
+    EXPECT_EQ(json.at("verdicts")[0].at("biases")[1].at("density seen").size(), 3U);
 }
 
 TEST(Sampling, WhatCannotBeSampledIsRefused) {
