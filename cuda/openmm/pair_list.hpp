@@ -30,8 +30,8 @@ class PairList {
         if (anew) openmm_.make_list(0, 1);
         return anew;
     }
-    /// To be called after each evaluation was enqueued. The list is kept until it is rebuilt, also
-    /// for energies that are requested meanwhile.
+    /// Must be called after each evaluation was enqueued. The list is kept until it is rebuilt,
+    /// also for energies that are requested meanwhile.
     void note_evaluation() {
         if (is_kept_) openmm_.keep_list();
         if (!std::exchange(has_computed_, true)) is_kept_ = may_be_kept_ && openmm_.tiles() > 0;

@@ -29,7 +29,7 @@ struct SystemMean {
 /// True if the number is an energy of a term.
 bool is_energy(SystemMean const&);
 
-/// What describes all chains of a row together.
+/// Numbers that describe all chains of a row together.
 struct ChainsTogether {
     /// Means; none for copies that never meet.
     std::vector<SystemMean> means;
@@ -48,7 +48,7 @@ struct SamplingTimes {
     std::int64_t steps = 0;
 };
 
-/// What computes a row: backend of the chains, platform and path of the forces.
+/// Programs behind a row: backend of the chains, platform and path of the forces.
 struct SamplingEngine {
     std::string backend, platform, path;
 };

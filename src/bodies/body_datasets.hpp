@@ -18,8 +18,8 @@ namespace catena::scene {
 /// (ForceTerm::read_table()).
 class BodyDatasets {
   public:
-    /// Both must outlive the object. `joints`: types of the bodies' joints, which may be read
-    /// later than this object is made.
+    /// The arguments must outlive the object. `joints`: types of the bodies' joints, which may be
+    /// read later than this object is made.
     BodyDatasets(Hdf5Table const& table, std::vector<JointType> const& joints)
         : table_(table), joints_(joints) {}
 

@@ -406,7 +406,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     for (int const chain : chains) {
         ChainSpec const& spec = scene.chains[chain];
         lengths.push_back(static_cast<std::int64_t>(spec.size()));
-        group.chains.push_back({chain, spec.name, spec.base, first_in_scene[chain]});
+        group.chains.push_back({chain, spec.name, first_in_scene[chain]});
         tips.push_back(tip_of(spec));
         look_at_joints(group, spec);
     }

@@ -16,7 +16,6 @@ namespace catena {
 struct GroupChain {
     int in_scene = 0;  // index of the chain in the scene
     std::string name;
-    Base base = Base::free;
     /// Scene-wide index of the chain's first body (bodies counted over all chains of the scene).
     std::int64_t first_body = 0;
 };
@@ -140,7 +139,7 @@ struct LocalCrossLink {
     std::int64_t piece = 0;
 };
 
-/// What distinguishes branched and cross-linked chains from others. A rank owns all bodies of such
+/// Properties that branched and cross-linked chains alone have. A rank owns all bodies of such
 /// a chain, or none.
 struct Branching {
     /// Inboard body of each local body, -1 for first bodies; empty unless the chains are branched

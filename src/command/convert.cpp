@@ -13,7 +13,7 @@
 namespace catena::command {
 namespace {
 
-/// What was written: lines for the terminal, values for JSON.
+/// Report on the files written: lines for the terminal, values for JSON.
 struct Written {
     std::string frames;
     Json json;

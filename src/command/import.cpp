@@ -139,7 +139,7 @@ foreign::WrittenStart start_of(foreign::Files const& files, foreign::SceneDraft 
     }
 }
 
-/// What the scenes of an import have in common. Writes the topology of a State.
+/// Parts that the scenes of an import have in common. Writes the topology of a State.
 foreign::SceneDraft draft_of(foreign::Files const& files, foreign::Settings const& settings,
                              ImportRequest const& request) {
     foreign::SceneDraft draft;

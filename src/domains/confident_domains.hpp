@@ -9,7 +9,7 @@
 
 namespace catena::scene {
 
-/// What counts as a domain. The defaults are those of AlphaFold's own scale of confidence.
+/// Criteria of a domain. The defaults are those of AlphaFold's own scale of confidence.
 struct DomainThresholds {
     /// Least pLDDT of a residue, 0 to 100.
     double plddt = 70;

@@ -13,7 +13,7 @@
 
 namespace catena::scene {
 
-/// What `rigid` may refer to.
+/// Residues and files that `rigid` may refer to.
 struct RigidSource {
     ResidueNumbers numbers;
     /// Name of the entry, which chooses a protein of a domain file.

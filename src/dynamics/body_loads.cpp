@@ -6,7 +6,7 @@
 namespace catena {
 namespace {
 
-/// What force terms are asked to fill their arrays with (ForceTerm::collect()).
+/// Maker that force terms are asked to fill their arrays with (ForceTerm::collect()).
 struct BodyLoadsMaker {
     ChainGroup const& group;
     Scene const& scene;

@@ -124,7 +124,7 @@ class BondCheck {
             }
     }
 
-    /// What is compared, for messages: "bonds" have "a stiffness" in "kJ/mol/nm2".
+    /// Names of a compared number, for messages: "bonds" have "a stiffness" in "kJ/mol/nm2".
     struct Property {
         char const *of, *name, *unit;
     };

@@ -10,7 +10,7 @@
 
 namespace catena::foreign {
 
-/// What an import does with a key.
+/// Use that an import makes of a key.
 enum class KeyUse {
     compared,  // with the System or the topology: another value is refused
     taken,     // over into the scene, or noted

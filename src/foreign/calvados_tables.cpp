@@ -44,8 +44,8 @@ Node named(std::string const& text) {
     return node;
 }
 
-/// How restraints count particles: not at all, by the molecules' names, or as version 0.8 of the
-/// package does, where a component begins after the molecules of the preceding one alone.
+/// Ways in which restraints count particles: not at all, by the molecules' names, or as version 0.8
+/// of the package does, where a component begins after the molecules of the preceding one alone.
 enum class Numbering { none, of_names, of_package };
 
 /// Lines such as "A 1 72 | A 1 157 | 0.559 700.0": two beads, each with molecule and bead from 1,

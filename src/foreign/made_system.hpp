@@ -20,7 +20,7 @@ inline constexpr double most_pdb_difference = 2e-4;  // nm
 /// The System of a folder with its topology.
 struct MadeSystem {
     SystemText text;
-    /// Nothing if no charges are recognised.
+    /// Empty if no charges are recognised.
     std::optional<ScreenedChains> charges;
     /// Chains of the topology; empty without one.
     std::vector<PdbChain> chains;

@@ -36,13 +36,13 @@ double beads_of(BranchedShape const& shape);
 /// decides random trees alone.
 std::vector<std::int64_t> inboard_beads(BranchedShape const& shape, std::uint64_t seed);
 
-/// What a start leaves of overlaps: their number, and the smallest distance of two beads.
+/// Overlaps that a start leaves: their number, and the smallest distance of two beads.
 struct Overlaps {
     std::int64_t count = 0;
     double nearest = 0;
 };
 
-/// Where a tree grows from.
+/// Place from which a tree grows.
 struct TreeRoot {
     Base base = Base::free;
     Vec3 anchor = Vec3::zero();

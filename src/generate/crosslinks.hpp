@@ -33,7 +33,7 @@ struct CrossLinkFit {
     bool quiet = false;
     /// True if the links that are redundant in any position of such a chain have been noted.
     bool is_known = false;
-    /// What to do if the positions do not fit the lengths.
+    /// Remedy if the positions do not fit the lengths.
     char const* remedy = "write `relax: true`, give positions that fit, or leave the length out";
 };
 /// Gives cross-links without a length, those of length 0, the distance of their beads. Moves the

@@ -33,9 +33,9 @@ struct DeviceParticles {
     std::int64_t places = 0;
     /// Offset that is subtracted from all positions, and edges of the periodic box, nm.
     Vec3 origin = Vec3::zero(), box = Vec3::zero();
-    /// With replicas, else null: x, y, z that replace `origin` for each bead, nm. `box` is then the
-    /// distance between the places of replicas, and cells are places. `strayed` is set to 1 if a
-    /// coordinate relative to `centre` exceeds `farthest`, nm.
+    /// Coordinates x, y, z, null without replicas, that replace `origin` for each bead, nm. `box`
+    /// is then the distance between the places of replicas, and cells are places. `strayed` is set
+    /// to 1 if a coordinate relative to `centre` exceeds `farthest`, nm.
     double const* centre = nullptr;
     double farthest = 0;
     std::int64_t* strayed = nullptr;

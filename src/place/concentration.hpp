@@ -11,7 +11,7 @@ namespace catena::scene {
 
 /// A concentration as the scene gives it.
 struct Concentration {
-    /// In mg/ml or, if `molar`, in mmol/l.
+    /// Value in mg/ml or, if `molar`, in mmol/l.
     double value = 0;
     bool molar = false;
 };

@@ -256,8 +256,8 @@ std::vector<bool> cross_link(ChainSpec& chain, ChainRequest const& request, Node
     return open;
 }
 
-/// What a source of bodies tells of them: true if it has their velocities, and its first planar
-/// joint, or nullptr.
+/// Facts that a source of bodies tells of them: true if it has their velocities, and its first
+/// planar joint, or nullptr.
 struct FromSource {
     bool velocities = true;
     Node const* planar = nullptr;

@@ -11,7 +11,7 @@ namespace catena::scene {
 
 class WrittenSystem;
 
-/// What other sections say of all chains.
+/// Statements of other sections on all chains.
 struct ChainContext {
     /// True if the scene names a temperature; chains without velocities then start thermal.
     bool warm = false;

@@ -17,7 +17,7 @@ void note_water(Scene&);
 /// strength or pH. Water outside the range of measured permittivity is noted, too.
 /// Precondition: all sections except the chains have been read.
 void note_forces(Scene&);
-/// What samples of chains say of a step beside shorter ones.
+/// Evidence from samples of chains for a step beside shorter ones.
 enum class StepEvidence {
     shown,          // biases are below 1 % even with two standard errors more
     no_bias_found,  // biases and their standard errors are below 1 %, or equal to it

@@ -10,7 +10,7 @@
 
 namespace catena::scene {
 
-/// What becomes of gaps: refused, the chain ends there, or missing residues are modelled.
+/// Treatments of gaps: refused, the chain ends there, or missing residues are modelled.
 enum class GapRule : std::uint8_t { refuse, split, model };
 
 /// Returns the indices k of the sites of one chain for which residues are missing between sites k -

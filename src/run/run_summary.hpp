@@ -14,7 +14,7 @@
 
 namespace catena {
 
-/// What a run measured of itself.
+/// Measurements that a run made of itself.
 struct RunRecord {
     double seconds = 0;              // duration of all steps
     double first_step_after = 0;     // seconds since the program's start; 0: no step yet

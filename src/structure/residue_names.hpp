@@ -35,7 +35,7 @@ bool is_amino_acid(std::string_view name);
 /// True if the name is that of a nucleotide of RNA or DNA, such as "A", "DG" or "RU5".
 bool is_nucleotide(std::string_view name);
 
-/// What to do with nucleotides in a structure file.
+/// Remedy for nucleotides in a structure file.
 inline constexpr char const* nucleotide_remedy =
     "name a chain of amino acids by `chain`, or take nucleic acids out of the file; RNA takes its "
     "`sequence` and `model: calvados_rna`";

@@ -10,7 +10,7 @@ class Fingerprint;
 
 namespace catena::terms {
 
-/// Its energies are terms of OpenMM's own, one per force of the System.
+/// The energies are terms of OpenMM's own, one per force of the System.
 struct OpenMmTerm : ForceTerm {
     static constexpr char const* name = "openmm";
     static constexpr bool known_to_openmm = true;

@@ -6,7 +6,7 @@
 
 namespace catena::terms {
 
-/// Its arrays hold the constant wrenches of all terms (constant_wrench() in force_terms.hpp).
+/// The arrays hold the constant wrenches of all terms (constant_wrench() in force_terms.hpp).
 struct Wrench : ForceTerm {
     static constexpr char const* name = "wrenches";
     static constexpr bool known_to_peers = true;

@@ -65,7 +65,7 @@ struct JointSteps {
         }
         if (!chains.left.motions) chains.template set_relative<positions>(k);
     }
-    /// The same for the free base of a piece.
+    /// Version for the free base of a piece.
     CATENA_HD void accumulate_base(std::int64_t piece, Vec3 const& acceleration,
                                    WeightedStage const& s) const {
         StateView const& state = chains.moved.scan.state;
