@@ -129,7 +129,10 @@ TEST(ConstantForce, LeavesOtherBeadsAlone) {
         Scene const scene = parse_scene(text, "s.yaml");
         ChainSystem system(scene, Axes::world, *communicator);
         system.evaluate();
-        return system.bead_forces();
+        View<3> const force = system.absolute().at(0)->bead_forces();
+        std::vector<Vec3> all;
+        for (std::int64_t k = 0; k < force.size; ++k) all.push_back(force.load(k));
+        return all;
     };
     std::vector<Vec3> const all = forces(beads + gravity), one = forces(zero + gravity);
     ASSERT_EQ(all.size(), 3u);
