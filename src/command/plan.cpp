@@ -82,8 +82,8 @@ std::string tree_text(ChainGroup const& group) {
     std::string const bodies =
         group.is_branched()
             ? fmt::format(
-                  "{} bodies in {} and {}: {} of up to {} bodies, then at most {} of "
-                  "merges on a path",
+                  "{} bodies in {} and {}: {} of up to {} bodies, at most {} of "
+                  "merges in a phase",
                   group.partition.bodies(),
                   counted(group.branching.paths.of_all_ranks.paths, "path", "paths"),
                   counted(group.branching.paths.of_all_ranks.phases, "phase", "phases"),
