@@ -220,7 +220,7 @@ std::vector<SolverReport> SystemChains::solver_reports() const {
     auto const add = [&](ChainSolver const& solver) {
         SolverReport r = solver.report();
         r.backend = name_of(backend_);
-        r.handles = name_of(scene_.solver.handles);
+        if (r.handles.empty()) r.handles = name_of(scene_.solver.handles);
         reports.push_back(r);
     };
     for (auto const& group : absolute_) add(group->solver());

@@ -72,11 +72,13 @@ bool any_slides(ChainSpec const& chain) {
            (chain.tip == Tip::jointed && slides(chain.tip_joint.type));
 }
 
-/// True for a chain of revolute joints from the ground on that rotates about one axis, in one
-/// plane. The tolerance is rounding, because planar handles omit all motion out of the plane.
+/// True for an unbranched chain of revolute joints from the ground on that rotates about one axis,
+/// in one plane. The tolerance is rounding, because planar handles omit all motion out of the
+/// plane.
 bool is_planar(ChainSpec const& chain) {
     std::size_t odd = 0;
-    return chain.base == Base::fixed && !any_slides(chain) && parallel_within(rounding, chain, odd);
+    return chain.base == Base::fixed && !chain.is_branched() && !any_slides(chain) &&
+           parallel_within(rounding, chain, odd);
 }
 
 std::int64_t freedom_of_links(ChainSpec const& chain) {

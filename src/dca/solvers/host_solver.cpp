@@ -14,12 +14,16 @@ std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, Executor co
                                                   Communicator const&);
 std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const&, Executor const&,
                                                      Communicator const&);
+std::unique_ptr<ChainSolver> make_body_tree_solver(ChainGroup const&, Executor const&,
+                                                   Communicator const&);
 
 }  // namespace dca
 
 /// Selects the host solver by handles, coordinates and number of directions.
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor const& executor,
                                               Communicator const& communicator) {
+    if (group.is_branched() && !group.beads)
+        return dca::make_body_tree_solver(group, executor, communicator);
     if (group.handles == Handles::articulated)
         return dca::make_articulated_solver(group, executor, communicator);
     if (!group.branching.crosslinks.empty())
