@@ -162,8 +162,8 @@ TEST(Model, TakesBranchesOfBeads) {
 
 /// Branched bodies in memory are those of the same scene in YAML.
 TEST(Model, TakesBranchesOfBodies) {
-    Joint const hinge{.type = "revolute", .axis = Triple{0, 0, 1}, .translation = {1, 0, 0}};
-    Body const body{.mass = 1, .inertia = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .joint = hinge};
+    Joint const joint{.type = "revolute", .axis = Triple{0, 0, 1}, .translation = {1, 0, 0}};
+    Body const body{.mass = 1, .inertia = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .joint = joint};
     Chain tree{.name = "tree", .bodies = {body, body, body}, .fixed_base = true};
     tree.bodies[2].parent = 1;
     Model memory(Units::si);
