@@ -93,6 +93,7 @@ std::string text_of(Body const& body) {
     map.number("mass", body.mass);
     if (body.com != Triple{}) map.triple("com", body.com);
     map.text("inertia", list(body.inertia));
+    if (body.parent) map.text("parent", std::to_string(*body.parent));
     if (body.joint) map.text("joint", text_of(*body.joint));
     map.further(body.keys);
     return map.str();

@@ -16,7 +16,7 @@ namespace catena {
 /// Further keys of a scene and their values, in YAML.
 using FurtherKeys = std::map<std::string, std::string>;
 
-/// Joint that connects a body to the one before it, as `joint` of a scene. Lists have as many
+/// Joint that connects a body to the one it hangs on, as `joint` of a scene. Lists have as many
 /// numbers as the type has coordinates; empty lists leave the defaults.
 struct Joint {
     /// Name of the type: free, revolute, planar, universal, spherical, prismatic, helical,
@@ -49,6 +49,8 @@ struct Body {
     /// Absent for body 1 of a chain with a free base, and if `keys` has one.
     std::optional<Joint> joint = {};
     FurtherKeys keys = {};
+    /// Number of the body on which it hangs, counted from 1; absent for the body before.
+    std::optional<std::int64_t> parent = {};
 };
 
 /// Point mass on a rigid link to the bead before it, or to another one.

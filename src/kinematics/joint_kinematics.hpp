@@ -102,7 +102,8 @@ class JointKinematics {
     /// a chain.
     template <bool positions, class Last>
     void sweep(JointScan const& s, LoadsForNeighbour const& loads, Last const& last) {
-        if (goes_by_levels()) return by_levels(last);
+        if constexpr (std::is_same_v<Space, HostSpace>)
+            if (goes_by_levels()) return by_levels(last);
         sweep<positions>(s, loads);
         space_.for_each(group_.size, last);
     }
@@ -139,15 +140,15 @@ class JointKinematics {
     }
 
     // Members below are public because nvcc accepts device lambdas in public members only.
-    /// Calls last(k) for the bodies of each level, level after level.
+    /// Calls last(k) for the bodies of each level, level after level; on the host.
     template <class Last>
-    void by_levels(Last const& last) {
+    void by_levels(Last const& last) const {
         std::vector<std::int64_t> const& first = joints_.levels().first_of_level;
         for (std::size_t level = 0; level + 1 < first.size(); ++level) {
             std::int64_t const* const body = joints_.body_of_level().data() + first[level];
             std::int64_t const count = first[level + 1] - first[level];
             Space const& space = count < dca::level_worth_threads ? alone_ : space_;
-            space.for_each(count, [body, last] CATENA_LAMBDA(std::int64_t i) { last(body[i]); });
+            space.for_each(count, [&](std::int64_t i) { last(body[i]); });
         }
     }
     template <bool positions>

@@ -272,6 +272,32 @@ TEST_F(Runs, CoordinatesAreTheSameOnSeveralRanks) {
     }
 }
 
+TEST_F(Runs, ABranchedChainOfBodiesHasTheSameBitsInPartsAndOnRanks) {
+    auto const words = [](std::initializer_list<char const*> more) {
+        Words all{"run",   input("humanoid.yaml"),   "--quiet", "--set", "output.every=10",
+                  "--set", "output.coordinates=true"};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    expect_good(catena(words({"--steps", "40", "--output", "whole"}), folder_.path()));
+    expect_good(catena(words({"--steps", "20", "--output", "parts"}), folder_.path()));
+    expect_good(
+        catena(words({"--steps", "40", "--restart", "parts/checkpoint.h5"}), folder_.path()));
+    EXPECT_EQ(catena_on(2, words({"--steps", "40", "--output", "two"}), folder_.path()).status, 0);
+    for (char const* const data :
+         {"particles/trajectory/position/value", "catena/joint_position/value",
+          "catena/joint_rate/value", "catena/body_velocity/value"}) {
+        Numbers const whole = numbers_of(at("whole/trajectory.h5md"), data);
+        EXPECT_EQ(whole.shape.at(0), 5U) << data;
+        EXPECT_EQ(numbers_of(at("parts/trajectory.h5md"), data).values, whole.values) << data;
+        EXPECT_EQ(numbers_of(at("two/trajectory.h5md"), data).values, whole.values) << data;
+    }
+    EXPECT_EQ(numbers_of(at("whole/trajectory.h5md"), "catena/parent").values,
+              (std::vector<double>{-1, 0, 1, 1, 3, 1, 5, 0, 7, 8, 0, 10, 11}));
+    EXPECT_EQ(numbers_of(at("whole/trajectory.h5md"), "connectivity/bonds").shape,
+              (std::vector<hsize_t>{12, 2}));
+}
+
 TEST_F(Runs, ABranchGoesOnFromPositionsAndVelocitiesWithOtherValues) {
     expect_good(run("restart-branch", {"--set", "output.velocities=true", "--output", "out"}));
     std::string const from = "out/checkpoint.h5";

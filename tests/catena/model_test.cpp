@@ -160,6 +160,26 @@ TEST(Model, TakesBranchesOfBeads) {
     for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(seen[k][0], star.beads[k].position[0], 1e-14);
 }
 
+/// Branched bodies in memory are those of the same scene in YAML.
+TEST(Model, TakesBranchesOfBodies) {
+    Joint const joint{.type = "revolute", .axis = Triple{0, 0, 1}, .translation = {1, 0, 0}};
+    Body const body{.mass = 1, .inertia = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .joint = joint};
+    Chain tree{.name = "tree", .bodies = {body, body, body}, .fixed_base = true};
+    tree.bodies[2].parent = 1;
+    Model memory(Units::si);
+    memory.add(tree).set("forces.gravity", "[0, -9.81, 0]");
+    std::string const hanging =
+        "{mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1], translation: [1, "
+        "0, 0]}";
+    Model const text = Model::from_text("units: si\nchains: [{name: tree, base: fixed, bodies: [" +
+                                        hanging + "}, " + hanging + "}, " + hanging +
+                                        ", parent: 1}]}]\nforces: {gravity: [0, -9.81, 0]}\n");
+    SolverResult const a = Solver(memory).solve(), b = Solver(text).solve();
+    EXPECT_TRUE(a.valid());
+    EXPECT_EQ(a.joint_acceleration, b.joint_acceleration);
+    EXPECT_EQ(a.joint_acceleration[1], a.joint_acceleration[2]);
+}
+
 /// The random tree of tests/data/reference/beadtree20.json: accelerations and tensions that were
 /// computed to 50 digits by other means.
 TEST(Solver, HasTheAccelerationsOfAThirdPartysTree) {

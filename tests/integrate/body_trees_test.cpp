@@ -5,6 +5,7 @@
 #include "integrate/joint_integrators.hpp"
 #include "observe/observables.hpp"
 #include "oracle/oracle.hpp"
+#include "scene/freedom.hpp"
 #include "tests/integrate/constrained_run.hpp"
 #include "tests/support/integrators.hpp"
 #include "tests/support/random_tree.hpp"
@@ -94,6 +95,27 @@ TEST(BodyTrees, DampersTakeEnergy) {
         run.run(20, 0.001);
         EXPECT_LT(run.energy(), before);
         before = run.energy();
+    }
+}
+
+/// Friction that forgets all velocities in a step leaves independent draws of kT / 2 each.
+TEST(BodyTrees, TheThermostatDrawsVelocitiesOfItsTemperature) {
+    double constexpr kt = 2.5, h = 1e-9;
+    int constexpr draws = 2000;
+    for (Base const base : {Base::free, Base::fixed}) {
+        Scene const scene = tree_scene(base, RandomJoints::all, 4, false);
+        auto const communicator = serial_communicator();
+        ChainSystem system(scene, Axes::joint, *communicator);
+        auto const integrator =
+            make_program(system, program_of(Integrator::baoab, true), {50 / h, kt, 11});
+        double mean = 0;
+        for (int i = 0; i < draws; ++i) {
+            system.joint().front()->set_time(i * h);
+            integrator->step(h);
+            mean += 2 * kinetic_energy(scene, system.snapshot()) / kt / draws;
+        }
+        auto const dof = static_cast<double>(scene::degrees_of_freedom(scene.chains[0]));
+        EXPECT_NEAR(mean, dof, 4 * std::sqrt(2 * dof / draws));
     }
 }
 

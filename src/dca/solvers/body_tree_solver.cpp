@@ -21,7 +21,7 @@ class BodyTreeSolver final : public ChainSolver {
     using Body = TreeBody<sliding>;
 
   public:
-    /// The group, the executor and the communicator must outlive the solver.
+    /// The group, the executor and the communicator must outlive the solver. Collective.
     BodyTreeSolver(ChainGroup const& group, Executor const& executor,
                    Communicator const& communicator)
         : group_(group),
@@ -31,6 +31,7 @@ class BodyTreeSolver final : public ChainSolver {
           model_(space_.model(group)),
           leaf_(model_.view()),
           levels_(group.branching.inboard),
+          depth_(static_cast<std::int64_t>(communicator.max(static_cast<double>(levels_.depth())))),
           body_(static_cast<std::size_t>(group.size)) {}
 
     void assemble_matrices(ConfigurationView const& configuration) override {
@@ -59,8 +60,7 @@ class BodyTreeSolver final : public ChainSolver {
         add_tree(group_, communicator_, r);
         r.handles = name_of(Handles::articulated);
         r.run_length = 1;
-        r.depth =
-            static_cast<std::int64_t>(communicator_.max(static_cast<double>(levels_.depth())));
+        r.depth = depth_;
         r.threads = space_.threads();
         r.memory_bytes = group_.size * static_cast<std::int64_t>(sizeof(Body));
         return r;
@@ -185,6 +185,7 @@ class BodyTreeSolver final : public ChainSolver {
     HostSpace::Model model_;
     Leaf leaf_;
     Levels levels_;
+    std::int64_t depth_;  // Of all ranks.
     ConfigurationView configuration_;
     std::vector<Body> body_;
     bool measured_ = false;

@@ -33,7 +33,9 @@ struct JointSolution {
     ConstDirectionsView bias, joint_force, tip_bias, tip_force;
     ConstView<6> compliance;  // Compliance of implicit joints (ConfigurationView::compliance).
     /// Addition of the last refinement to `alpha` and `acceleration`; no origin without one.
-    ConstView<3> change_of_alpha{}, change_of_acceleration{};
+    struct Change {
+        ConstView<3> alpha{}, acceleration{};
+    } change = {};
 
     /// Accelerations and joint forces for output, W. Collective.
     BodyResults results(Communicator const&) const;
