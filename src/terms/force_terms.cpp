@@ -74,7 +74,10 @@ std::string why_host_alone(Scene const& scene) {
         return fmt::format("integrator {} works on the host", name_of(d.integrator));
     bool const cross_linked = std::any_of(scene.chains.begin(), scene.chains.end(),
                                           [](ChainSpec const& c) { return c.is_cross_linked(); });
-    return cross_linked ? "cross-linked chains are computed on the host" : "";
+    if (cross_linked) return "cross-linked chains are computed on the host";
+    bool const loops = std::any_of(scene.chains.begin(), scene.chains.end(),
+                                   [](ChainSpec const& c) { return c.has_loops(); });
+    return loops ? "chains with `loops` are computed on the host" : "";
 }
 
 std::vector<char const*> keys_beside(std::initializer_list<char const*> before,
