@@ -204,7 +204,7 @@ std::string not_for_peers(Scene const& scene) {
     if (scene.chains.size() != 1) return "not a single chain";
     if (!unknown.empty()) return "forces that they lack (" + unknown + ")";
     ChainSpec const& chain = scene.chains.front();
-    if (chain.tip != Tip::free) return "a closed chain";
+    if (chain.is_closed()) return "a closed chain";
     if (chain.is_linked()) return "beads and rigid bodies on links in one chain";
     if (scene::goes_by_paths(chain))
         return std::string("a ") + scene::kind_of_paths(chain) + " chain";

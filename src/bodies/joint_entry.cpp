@@ -263,6 +263,26 @@ JointEntry read_joint(Node const& node) {
     return entry;
 }
 
+TipJoint read_loop_joint(Node const& node) {
+    Fields const joint(node, keys::loop_joint);
+    TipJoint entry;
+    auto const [type, planar] = type_of(node);
+    Node const& written = *node.find("type");
+    if (planar) fail(written, "a planar joint in `loops`", "write `type: revolute`");
+    if (floats(type)) fail(written, "a free joint closes no loop", "leave this loop out");
+    if (is_rod(type))
+        fail(written, "a link closes no loop of rigid bodies",
+             "use another type, such as spherical, on a body for the rod");
+    entry.type = type;
+    std::vector<std::string_view> keys = geometry_keys(type);
+    if (!is_rigid(type)) keys.emplace_back("q");
+    check_keys(node, type, keys);
+    read_geometry(joint, entry);
+    entry.q = rest_position(type);
+    if (Node const* const q = joint.find("q")) entry.q = position(*q, type, false);
+    return entry;
+}
+
 // Links and joints with axes have different keys; both may have an anchor unless they close a ring.
 TipEntry read_tip_joint(Node const& node, bool ring) {
     for (char const* const key : {"anchor", "q"})

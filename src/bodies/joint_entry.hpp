@@ -50,6 +50,9 @@ struct TipEntry {
 /// than links need their translation.
 TipEntry read_tip_joint(Node const& joint, bool ring);
 
+/// Reads the joint of an entry of `loops`: any type but free, planar and link.
+TipJoint read_loop_joint(Node const& joint);
+
 /// Number of components of the joint's torque, stiffness or damping: 1, 2 or 3. It is 0 for links,
 /// welds and free joints.
 int numbers_of(JointType type);

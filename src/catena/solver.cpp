@@ -47,6 +47,8 @@ class Solver::Content {
         for (auto const& w : a.joint_force) result.joint_force.push_back(as_joint_force(w));
         for (TipForce const& tip : a.tip_force)
             result.tip_force.push_back(as_joint_force(tip.wrench));
+        for (TipForce const& loop : a.loop_force)
+            result.loop_force.push_back(as_joint_force(loop.wrench));
         result.residual = system_.residual();
         result.residual_bound = system_.residual_bound();
         result.error_bound = largest_forward_error;

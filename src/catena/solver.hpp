@@ -26,6 +26,8 @@ struct SolverResult {
     std::vector<JointForce> joint_force;
     /// Constraint forces of jointed tips and rings on the last bodies, one per such chain.
     std::vector<JointForce> tip_force;
+    /// Constraint forces of loops on the first of their two bodies, one per loop.
+    std::vector<JointForce> loop_force;
     /// Largest local residual of the equations of motion, and its bound by rounding.
     double residual = 0, residual_bound = 0;
     /// Estimated error relative to the largest acceleration; absent for beads, bodies on links and

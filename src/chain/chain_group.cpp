@@ -308,6 +308,23 @@ void fill_crosslink_lengths(ChainGroup& group, Scene const& scene) {
             group.joints.length.set(k++, {{link.length}});
 }
 
+/// Sets the loops of whole chains.
+void fill_loops(ChainGroup& group, Scene const& scene) {
+    for (std::size_t p = 0; p < group.pieces.size(); ++p) {
+        dca::Piece const& piece = group.pieces[p];
+        auto const local = [&](std::int64_t body) {
+            return body == LoopClosure::ground ? body : piece.local + body;
+        };
+        for (LoopClosure const& loop : scene.chains[group.chains[piece.chain].in_scene].loops) {
+            TipJoint const& j = loop.joint;
+            group.loops.push_back(
+                {local(loop.inboard), local(loop.outboard), static_cast<std::int64_t>(p), j,
+                 joint_axes(j.type, j.axis, j.first_axis), screw_of(j.type, j.pitch),
+                 restricted_by(j.type), loop.end_rotation, loop.end_translation});
+        }
+    }
+}
+
 /// Sets the counts of the paths on all ranks. Collective.
 void count_branches(ChainGroup& group, Communicator const& communicator) {
     dca::BranchCounts const own = group.branching.paths.counts();
@@ -415,15 +432,16 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.directions = directions_of(group);
     group.planar = group.directions == 2;
     bool const by_paths = scene::goes_by_paths(any);
+    group.has_loops = any.has_loops();
     group.partition = dca::Partition(lengths, pairwise, communicator.size(), tips);
-    group.partition.whole_chains = by_paths;
-    if (by_paths || !options.shares.empty())
+    group.partition.whole_chains = by_paths || group.has_loops;
+    if (group.partition.whole_chains || !options.shares.empty())
         dca::cut_by_shares(group.partition, communicator.size(), options.shares);
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
     group.revolute = !group.beads && !group.linked && group.directions == 5 &&
-                     !group.joints.has_screws &&
+                     !group.joints.has_screws && !group.has_loops &&
                      std::all_of(chains.begin(), chains.end(),
                                  [&](int chain) { return is_revolute(scene.chains[chain]); });
     group.ends.tips_in_scene = std::any_of(tips.begin(), tips.end(),
@@ -436,6 +454,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     if (by_paths) fill_crosslink_lengths(group, scene);
     if (by_paths) fill_branches(group, scene, pairwise, communicator);
     if (!group.beads) fill_carried(group, scene);
+    fill_loops(group, scene);
     fill_restricted(group, scene, options.implicit);
     find_neighbours(group, communicator.rank());
     find_rings(group, communicator.rank());
@@ -444,8 +463,14 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     return group;
 }
 
+/// Least number of a group of chains with loops.
+int constexpr first_group_of_loops = 10;
 /// Returns a number that is equal for chains of one group.
 int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
+    if (spec.has_loops())
+        return first_group_of_loops + (carries_all(handles) || (implicit && scene::resists(spec))
+                                           ? 6
+                                           : smallest_directions(spec));
     if (spec.is_cross_linked()) return 8;
     if (scene::branches(spec)) return spec.is_beads() ? 7 : 9;
     if (spec.is_beads()) return 0;

@@ -35,7 +35,7 @@ struct ChainGroup {
     /// suffice.
     bool planar = false;
     /// True for bodies on projected handles whose joints are revolute, except for the first joints
-    /// of chains; tips are free.
+    /// of chains; tips are free, and there are no loops.
     bool revolute = false;
     Axes axes = Axes::joint;
     Handles handles = Handles::projected;
@@ -51,6 +51,10 @@ struct ChainGroup {
     LocalJoints joints;
     LocalBodies bodies;
     Branching branching;
+    /// Loops of this rank's chains, chain by chain.
+    std::vector<LocalLoop> loops;
+    /// True if the chains of the group have loops, on any rank.
+    bool has_loops = false;
     LocalBeads carried;
     NeighbourRanks neighbours;
 
@@ -64,6 +68,8 @@ struct ChainGroup {
     bool sweeps_read_inertias() const;
     /// Name of the smallest handle kind: link | planar | spherical | universal | revolute | full.
     char const* kind() const;
+    /// True if some chain of the group has a jointed tip or loops, on any rank.
+    bool has_closures() const { return ends.has_tips() || has_loops; }
     bool is_branched() const { return branching.paths.of_all_ranks.paths > 0; }
     /// Entry of the first cross-link in arrays over links.
     std::int64_t first_crosslink() const { return size + 1; }

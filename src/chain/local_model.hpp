@@ -152,6 +152,24 @@ struct Branching {
     std::vector<LocalCrossLink> crosslinks;
 };
 
+/// Joint that closes a loop of rigid bodies. A rank owns all bodies of a chain with loops, or none.
+struct LocalLoop {
+    /// Local indices of the bodies; LoopClosure::ground for the ground.
+    std::int64_t inboard = LoopClosure::ground, outboard = LoopClosure::ground;
+    /// Index of the chain's piece in ChainGroup::pieces.
+    std::int64_t piece = 0;
+    /// Joint as the scene has it, with its frame J in the inboard body.
+    TipJoint joint;
+    /// Axes of the joint in J, and its screw; see LocalBodies::axes1 and LocalJoints::screw.
+    Mat3 axes;
+    Vector<double, 4> screw;
+    /// Number of constrained directions.
+    int restricted = 0;
+    /// Orientation and origin of G in the outboard body.
+    Mat3 end_rotation;
+    Vec3 end_translation;
+};
+
 /// Beads that the rigid bodies of a group carry.
 struct LocalBeads {
     /// True if some body of the group carries beads, on any rank.

@@ -16,6 +16,7 @@
 #include "plan/savings.hpp"
 #include "scene/branch_limits.hpp"
 #include "scene/branches.hpp"
+#include "scene/loops.hpp"
 #include "terms/force_terms.hpp"
 
 namespace catena::command {
@@ -139,6 +140,31 @@ std::string crosslinks_text(CrossLinkCounts const& crosslinks) {
         most, most);
 }
 
+/// Loops of a group's chains, and the directions that they restrict.
+struct LoopCounts {
+    std::size_t all = 0;
+    std::int64_t most_directions_of_a_chain = 0;
+};
+LoopCounts loops_of(ChainGroup const& group, Scene const& scene) {
+    LoopCounts counts;
+    for (GroupChain const& of : group.chains) {
+        ChainSpec const& chain = scene.chains[static_cast<std::size_t>(of.in_scene)];
+        counts.all += chain.loops.size();
+        counts.most_directions_of_a_chain =
+            std::max(counts.most_directions_of_a_chain, scene::directions_of_loops(chain));
+    }
+    return counts;
+}
+
+/// Describes the cost of loops.
+std::string loops_text(LoopCounts const& loops) {
+    std::int64_t const most = loops.most_directions_of_a_chain;
+    return fmt::format(
+        "{}, up to {} restricted directions a chain: after each matrix sweep {} for their "
+        "responses and systems of up to {} x {}; bias sweeps are made twice",
+        loops.all, most, counted(most, "bias sweep", "bias sweeps"), most, most);
+}
+
 /// Adds the description of a group: blocks, tree, units, collectives and memory.
 void add_group(Text& text, Json& list, ChainGroup const& group, Scene const& scene,
                SolverReport const& report) {
@@ -154,6 +180,8 @@ void add_group(Text& text, Json& list, ChainGroup const& group, Scene const& sce
     TreeCounts const counts = counts_of(group, scene, report);
     text.entry("tree", tree_text(group, counts));
     if (crosslinks.all > 0) text.entry("cross-links", crosslinks_text(crosslinks));
+    LoopCounts const loops = loops_of(group, scene);
+    if (loops.all > 0) text.entry("loops", loops_text(loops));
     if (!group.is_branched())
         text.entry(
             "units",
@@ -178,6 +206,8 @@ void add_group(Text& text, Json& list, ChainGroup const& group, Scene const& sce
                     {"levels", counts.levels},
                     {"depth", counts.depth},
                     {"crosslinks", crosslinks.all},
+                    {"loops", loops.all},
+                    {"directions_of_loops", loops.most_directions_of_a_chain},
                     {"units", group.is_branched() ? 1 : tree.units},
                     {"bodies_of_ranks", shares},
                     {"collectives",
@@ -220,7 +250,7 @@ StepPlan evaluations_of(DynamicsSpec const& d, bool tips, int corrections) {
     return {evaluations + corrections, evaluations + corrections, 0,
             fmt::format("{}{}: a matrix sweep and a bias sweep each; {}",
                         counted(evaluations, "evaluation", "evaluations"), inner,
-                        tips ? fmt::format("{} corrections that close jointed tips, again "
+                        tips ? fmt::format("{} corrections that close tips and loops, again "
                                            "a matrix sweep and a bias sweep each",
                                            corrections)
                              : "joint coordinates need no projection")};
@@ -229,7 +259,7 @@ StepPlan evaluations_of(DynamicsSpec const& d, bool tips, int corrections) {
 /// Counts the sweeps of the scene's integrator.
 StepPlan step_of(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
-    bool const tips = has_jointed_tips(scene);
+    bool const tips = has_closures(scene);
     int const corrections = tips ? JointDynamics::usual_corrections + 1 : 0;
     if (is_refined(d.integrator)) return evaluations_of(d, tips, corrections);
     if (uses_joint_coordinates(d.integrator)) return kicks_of(d, tips, corrections);
@@ -388,6 +418,11 @@ void add_notes(Text& text, Json& json, Scene const& scene,
                     [](ChainSpec const& chain) { return chain.is_cross_linked(); }))
         notes.push_back(
             "cross-linked chains are predicted without their cross-links, which take further bias "
+            "sweeps: --measure shows the time");
+    if (std::any_of(scene.chains.begin(), scene.chains.end(),
+                    [](ChainSpec const& chain) { return chain.has_loops(); }))
+        notes.push_back(
+            "chains with loops are predicted without them; their responses take further bias "
             "sweeps: --measure shows the time");
     json["notes"] = Json::array();
     for (std::string const& note : notes) {

@@ -45,7 +45,7 @@ std::string why_no_inverse_dynamics(ChainSystem const& system) {
     if (any_chain([](ChainSpec const& c) { return c.is_linked(); })) return "bodies are on links";
     if (any_chain([](ChainSpec const& c) { return c.is_cross_linked(); }))
         return "beads are cross-linked";
-    if (any_chain([](ChainSpec const& c) { return !c.is_beads() && c.tip == Tip::jointed; }))
+    if (any_chain([](ChainSpec const& c) { return !c.is_beads() && c.is_closed(); }))
         return "bodies form a loop";
     std::string lacking;
     terms::for_each([&](auto term) {

@@ -80,6 +80,16 @@ CATENA_HD LocalPiece const& piece_of(LocalPiece const* piece, std::int64_t piece
     return piece[low];
 }
 
+/// One side of the joint that closes a loop.
+struct LoopEnd {
+    Vec3 arm;   // Point of the joint from the body's centre of mass, B; from the origin of W.
+    Mat3 axes;  // Axes of the joint, B or W.
+};
+/// Both sides of the joint that closes a loop, at a configuration.
+struct LoopEnds {
+    LoopEnd inboard, outboard;
+};
+
 /// Configuration of the bodies, on which the matrices depend. W stands for ground axes, B for body
 /// axes.
 struct ConfigurationView {
@@ -105,6 +115,8 @@ struct ConfigurationView {
     ConstView<3> position{};
     LocalPiece const* piece = nullptr;
     std::int64_t pieces = 0;
+    /// Ends of ChainGroup::loops, on the host. They must stay valid until the last solve().
+    LoopEnds const* loop_ends = nullptr;
 };
 
 /// Loads for a solver that eliminates_revolute_joints(). In runs of two bodies or more, omega is
@@ -149,6 +161,8 @@ struct LoadsView {
     /// `bias` is then needed only for bodies that begin a chain or form a run of one body.
     ConstView<1> revolute_rate{};
     RevoluteLoads revolutes{};
+    /// Subtracted velocity terms of ChainGroup::loops, along the directions of each, as `tip_bias`.
+    Vector<double, 6> const* loop_bias = nullptr;
 };
 
 /// Results of ChainSolver::invert() for links: entries of the inverse of their matrix T
@@ -179,6 +193,8 @@ struct AccelerationsView {
     /// Component 1 belongs to the joint after such a run: angular acceleration of the run's last
     /// body about that joint's axis, relative to the ground.
     View<2> revolute_acceleration{};
+    /// Constraint force of ChainGroup::loops on the outboard bodies, along the directions of each.
+    Vector<double, 6>* loop_force = nullptr;
     /// True if runs on revolute joints compute the accelerations of all their bodies, not only of
     /// those named above.
     CATENA_HD bool by_all_bodies() const { return !revolute_acceleration.origin || joint_force; }

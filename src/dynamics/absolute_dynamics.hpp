@@ -42,6 +42,9 @@ struct BodyResults {
     /// Constraint [torque, force] on body k at its inboard joint.
     std::vector<Vector<double, 6>> joint_force;
     std::vector<TipForce> tip_force;
+    /// Constraint force of each loop's joint on its inboard body or the ground, in the order of
+    /// ChainGroup::loops. The torque is about the origin of the joint frame.
+    std::vector<TipForce> loop_force;
     /// Tension of each cross-link of the group, in the order of Branching::crosslinks.
     std::vector<CrossLinkTension> crosslink_tension;
 };

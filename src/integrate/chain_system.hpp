@@ -49,6 +49,8 @@ class ChainSystem : public SystemEvaluator {
         std::vector<TipForce> tip_force;
         /// Tension of each cross-link, in scene order.
         std::vector<double> crosslink_tension = {};
+        /// Constraint wrench of each loop, in scene order.
+        std::vector<TipForce> loop_force = {};
     };
     /// Returns the results of the last evaluate() on rank 0. Collective.
     Accelerations accelerations();
@@ -76,7 +78,10 @@ class ChainSystem : public SystemEvaluator {
     /// True if all chains are of beads, and no term but OpenMM's forces has an energy.
     bool is_free_of_potentials() const;
     std::vector<Vector<double, 6>> joint_forces(std::vector<BodyResults> const&) const;
+    /// Gathers wrenches of joints of chains on rank 0. Collective.
+    std::vector<TipForce> in_scene_order(std::vector<TipForce> const& own) const;
     std::vector<TipForce> tip_forces(std::vector<BodyResults> const&) const;
+    std::vector<TipForce> loop_forces(std::vector<BodyResults> const&) const;
     std::vector<double> crosslink_tensions(std::vector<BodyResults> const&) const;
 };
 

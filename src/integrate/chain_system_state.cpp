@@ -112,14 +112,26 @@ std::vector<Vec3> ChainSystem::bead_forces() const {
     return ordered;
 }
 
+std::vector<TipForce> ChainSystem::in_scene_order(std::vector<TipForce> const& own) const {
+    std::vector<TipForce> all = gathered_blocks(communicator_, own).values;
+    // One rank has all of a chain, in their order.
+    std::stable_sort(all.begin(), all.end(),
+                     [](TipForce const& a, TipForce const& b) { return a.chain < b.chain; });
+    return all;
+}
+
 std::vector<TipForce> ChainSystem::tip_forces(std::vector<BodyResults> const& results) const {
     std::vector<TipForce> own;
     for (BodyResults const& r : results)
         own.insert(own.end(), r.tip_force.begin(), r.tip_force.end());
-    std::vector<TipForce> all = gathered_blocks(communicator_, own).values;
-    std::sort(all.begin(), all.end(),
-              [](TipForce const& a, TipForce const& b) { return a.chain < b.chain; });
-    return all;
+    return in_scene_order(own);
+}
+
+std::vector<TipForce> ChainSystem::loop_forces(std::vector<BodyResults> const& results) const {
+    std::vector<TipForce> own;
+    for (BodyResults const& r : results)
+        own.insert(own.end(), r.loop_force.begin(), r.loop_force.end());
+    return in_scene_order(own);
 }
 
 std::vector<double> ChainSystem::crosslink_tensions(std::vector<BodyResults> const& results) const {
@@ -157,8 +169,9 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
                         to_array<3>("", rates.qdd.view(), *executor_).values, joint);
         gather_to_scene(communicator_, group, 3, at_starts(group, rates.base_acceleration), base);
     }
-    return {triples(joint), triples(body),       bead_forces(),     triples(alpha),
-            triples(base),  joint_forces(found), tip_forces(found), crosslink_tensions(found)};
+    return {triples(joint),    triples(body),       bead_forces(),     triples(alpha),
+            triples(base),     joint_forces(found), tip_forces(found), crosslink_tensions(found),
+            loop_forces(found)};
 }
 
 }  // namespace catena

@@ -44,10 +44,10 @@ class DormandPrinceSteps final : public JointIntegrator {
     DormandPrinceSteps(ChainSystem& system, double tolerance, double step)
         : system_(system), groups_(system.joint()), tolerance_(tolerance), control_(step) {
         has_tips_ = std::any_of(groups_.begin(), groups_.end(),
-                                [](JointDynamics const* g) { return g->group().ends.has_tips(); });
+                                [](JointDynamics const* g) { return g->group().has_closures(); });
     }
-    /// Closing tips changes the state, so that the accelerations at the step's end are no longer
-    /// valid.
+    /// Closing tips and loops changes the state, so that the accelerations at the step's end are no
+    /// longer valid.
     bool carries_rates() const override { return !has_tips_; }
     void close_with(int corrections) override { corrections_ = corrections; }
     std::optional<SweepsAStep> last_step() const override { return last_; }

@@ -7,9 +7,9 @@
 
 namespace catena {
 
-bool has_jointed_tips(Scene const& scene) {
+bool has_closures(Scene const& scene) {
     return std::any_of(scene.chains.begin(), scene.chains.end(),
-                       [](ChainSpec const& c) { return c.tip == Tip::jointed; });
+                       [](ChainSpec const& c) { return c.is_closed(); });
 }
 
 SweepsAStep sweeps_a_step(DynamicsSpec const& d, bool tips) {

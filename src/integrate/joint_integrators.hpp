@@ -50,10 +50,10 @@ class JointIntegrator {
 inline bool keeps_matrices(Scene const& scene) {
     return scene.forces.openmm || scene.solver.refine > 0 || !is_refined(scene.dynamics.integrator);
 }
-/// True if a chain of the scene has a jointed tip; rings have one as well.
-bool has_jointed_tips(Scene const&);
+/// True if a chain of the scene has a jointed tip, as rings have, or loops.
+bool has_closures(Scene const&);
 /// Returns the sweeps per time step, with an adaptive step per inner step; zeros for integrators in
-/// absolute coordinates. `tips`: true if the scene has jointed tips.
+/// absolute coordinates. `tips`: has_closures() of the scene.
 SweepsAStep sweeps_a_step(DynamicsSpec const&, bool tips);
 /// Makes the integrator that the scene's dynamics names. But for the Dormand-Prince pair each is a
 /// program (joint_program.hpp):

@@ -53,6 +53,8 @@ void cut(ChainSpec& chain, std::size_t size) {
         return joint.body >= static_cast<std::int64_t>(size);
     });
     chain.tip = Tip::free;
+    chain.loops.clear();
+    chain.redundant_directions = 0;
 }
 
 /// Returns a scene of the chains with springs only, for forward dynamics on one thread.

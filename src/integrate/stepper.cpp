@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Stepper in joint coordinates; its sweeps are corrections of jointed tips.
+/// Stepper in joint coordinates; its sweeps are corrections of jointed tips and loops.
 class JointStepper final : public Stepper {
   public:
     JointStepper(ChainSystem& system, DynamicsSpec const& d)
@@ -46,15 +46,15 @@ class JointStepper final : public Stepper {
         if (timeline)
             timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
     }
-    /// Only jointed tips can be open in joint coordinates. The result is NaN if the state is not
-    /// finite.
+    /// Only jointed tips and loops can be open in joint coordinates. The result is NaN if the state
+    /// is not finite.
     double constraint_error() override {
         double worst = 0;
         for (JointDynamics* const group : system_.joint())
             worst = larger(worst, group->closure_error());
         return worst;
     }
-    /// Above a tenth of the tolerance, jointed tips get one more correction.
+    /// Above a tenth of the tolerance, they get one more correction.
     double early() const override { return 0.1; }
     bool add_sweep() override {
         if (!has_tips() || corrections_ >= most_corrections) return false;
@@ -114,7 +114,7 @@ class JointStepper final : public Stepper {
     bool has_tips() const {
         auto const groups = system_.joint();
         return std::any_of(groups.begin(), groups.end(),
-                           [](JointDynamics const* g) { return g->group().ends.has_tips(); });
+                           [](JointDynamics const* g) { return g->group().has_closures(); });
     }
 
     /// Sums over all steps so far.
@@ -137,7 +137,7 @@ class JointStepper final : public Stepper {
     double h_, tolerance_, origin_ = 0;
     SweepsAStep sweeps_;
     Sum sum_;
-    // Corrections of tips' positions after a step.
+    // Corrections of positions of tips and loops after a step.
     int corrections_ = JointDynamics::usual_corrections;
     std::unique_ptr<JointIntegrator> integrator_;
 };

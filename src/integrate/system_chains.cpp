@@ -40,7 +40,7 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend,
 /// Throws InputError if articulated handles do not support this group. Validation has already
 /// refused chains with links or closed tips.
 void refuse_articulated(ChainGroup const& group, bool implicit) {
-    if (!group.beads && !group.linked && !group.ends.has_tips() && group.axes == Axes::joint &&
+    if (!group.beads && !group.linked && !group.has_closures() && group.axes == Axes::joint &&
         !implicit)
         return;
     throw InputError(
@@ -49,6 +49,14 @@ void refuse_articulated(ChainGroup const& group, bool implicit) {
                                     : "articulated handles and absolute coordinates",
         "solver.handles: articulated",
         "use integrator rk4, dormand-prince or velocity-verlet, or handles projected or full");
+}
+
+/// Throws InputError for chains with loops in absolute coordinates.
+void refuse_loops_in_absolute_coordinates(Scene const& scene, Axes axes) {
+    for (ChainSpec const& chain : scene.chains)
+        if (chain.has_loops() && axes == Axes::world)
+            throw InputError("loops in absolute coordinates", scene.file + ": chain " + chain.name,
+                             "use an integrator in joint coordinates, such as rk4");
 }
 
 }  // namespace
@@ -94,6 +102,7 @@ SystemChains::SystemChains(Scene const& scene, Axes axes, Communicator const& co
       communicator_(communicator),
       backend_(choose_backend(scene, communicator)) {
     scene::refuse_unsupported_branches(scene);
+    refuse_loops_in_absolute_coordinates(scene, axes);
     if (uses_gpu(backend_))
         refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator),
                     without_gpu);

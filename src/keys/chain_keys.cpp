@@ -57,6 +57,9 @@ constexpr Key chain_keys[] = {
      "Rigid links join these pairs of point beads, counted from 1, with the length that follows, "
      "else with their distance at the start.",
      "crosslinks: [[3, 9], [1, 12, 0.5]]"},
+    {"loops", "list of maps", "none", "",
+     "These joints close loops of rigid bodies, beside the bodies' own joints.",
+     "loops: [{bodies: [2, 5], joint: {type: spherical}}]"},
     {"anchor", "3 numbers", "`[0, 0, 0]`", "length",
      "The first link of a chain on a fixed base begins at this point of the ground.",
      "anchor: [0, 0, 10]"},
@@ -155,6 +158,32 @@ constexpr Key tip_joint_keys[] = {
     tip_length,
 };
 
+constexpr Key loop_keys[] = {
+    {"bodies", "2 whole numbers >= 0", "required", "",
+     "The joint connects the first of these bodies, counted from 1, to the second; 0 is the "
+     "ground.",
+     "bodies: [5, 0]"},
+    {"joint", "map", "required", "", "This joint closes the loop.",
+     "joint: {type: spherical, translation: [1, 0, 0]}"},
+    {"end", "3 numbers", "where the start puts it", "length",
+     "The joint's frame has its origin here in the second body; a loop that is open there is "
+     "refused.",
+     "end: [0.5, 0, 0]"},
+};
+
+constexpr Key loop_joint_keys[] = {
+    tip_type,
+    tip_axis,
+    tip_axes,
+    tip_pitch,
+    {"rotation", "3 rows of 3 numbers", "identity", "",
+     "This rotation matrix is the orientation of the joint's frame J in the first body."},
+    {"translation", "3 numbers", "`[0, 0, 0]`", "length",
+     "J has its origin here in the first body.", "translation: [1, 0, 0]"},
+    {"q", "as `q` of a joint", "0; identity", "as of a joint",
+     "The joint stands at this position at the start.", "q: 0.3"},
+};
+
 constexpr Key ring_keys[] = {
     tip_type,
     tip_axis,
@@ -181,6 +210,8 @@ constinit KeyMap const conformation{"chains.conformation", "chains[i].conformati
 constinit KeyMap const rigid{"chains.rigid", "chains[i].rigid", rigid_keys};
 constinit KeyMap const tip{"tip", "chains[i].tip", tip_keys};
 constinit KeyMap const tip_joint{"tip.joint", "chains[i].tip.joint", tip_joint_keys};
+constinit KeyMap const loop{"loops", "chains[i].loops[l]", loop_keys};
+constinit KeyMap const loop_joint{"loops.joint", "chains[i].loops[l].joint", loop_joint_keys};
 constinit KeyMap const tip_ring{"tip.ring", "chains[i].tip.ring", ring_keys};
 
 }  // namespace catena::scene::keys

@@ -14,6 +14,9 @@ extern KeyMap const top, box, cubic, place, slab, region, start, forces, drag, o
 /// ground or to body 1.
 extern KeyMap const chain, model, conformation, rigid, tip, tip_joint, tip_ring;
 
+/// An entry of a chain's `loops`, and its joint.
+extern KeyMap const loop, loop_joint;
+
 /// An entry of `bodies` that is a rigid body on a joint, and the maps that it may hold.
 extern KeyMap const body, wrench, carried_bead, joint, free_pose, free_rates, motion;
 

@@ -77,6 +77,15 @@ void for_each_crosslink(Scene const& scene, Solution const& s, Action const& act
             action(chain, link, s.crosslink_tension[next++]);
 }
 
+/// Calls action(chain, loop, wrench) for every loop.
+template <class Action>
+void for_each_loop(Scene const& scene, Solution const& s, Action const& action) {
+    std::size_t next = 0;
+    for (ChainSpec const& chain : scene.chains)
+        for (LoopClosure const& loop : chain.loops)
+            action(chain, loop, s.loop_force[next++].wrench);
+}
+
 void write_csv(std::string const& file, Scene const& scene, Solution const& s) {
     AtomicFile out(file);
     std::string header = "chain,body,joint";
@@ -92,6 +101,11 @@ void write_csv(std::string const& file, Scene const& scene, Solution const& s) {
         out.write(fmt::format("{},tip,{}{}{}\n", field(chain.name), name_of(chain.tip_joint.type),
                               fields({}), fields({tip.wrench.data, most_numbers})));
     }
+    for_each_loop(scene, s, [&](ChainSpec const& chain, LoopClosure const& loop, auto wrench) {
+        out.write(fmt::format("{},{}-{},{}{}{}\n", field(chain.name), loop.inboard + 1,
+                              loop.outboard + 1, name_of(loop.joint.type), fields({}),
+                              fields({wrench.data, most_numbers})));
+    });
     for_each_crosslink(scene, s, [&](ChainSpec const& chain, CrossLink const& link, double pull) {
         out.write(fmt::format("{},{}-{},crosslink{}{}\n", field(chain.name), link.inboard + 1,
                               link.outboard + 1, fields({}), fields({&pull, 1})));
@@ -149,6 +163,12 @@ void add_solution(Json& json, Scene const& scene, Solution const& s) {
     json["bead_forces"] = vectors_json(s.bead_force);
     json["joint_forces"] = std::move(forces);
     json["tip_forces"] = std::move(tips);
+    for_each_loop(scene, s, [&](ChainSpec const& chain, LoopClosure const& loop, auto w) {
+        json["loop_forces"].push_back({{"chain", chain.name},
+                                       {"bodies", {loop.inboard + 1, loop.outboard + 1}},
+                                       {"torque", {w[0], w[1], w[2]}},
+                                       {"force", {w[3], w[4], w[5]}}});
+    });
     for_each_crosslink(scene, s, [&](ChainSpec const& chain, CrossLink const& link, double pull) {
         json["crosslink_tensions"].push_back({{"chain", chain.name},
                                               {"beads", {link.inboard + 1, link.outboard + 1}},

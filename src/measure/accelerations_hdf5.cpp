@@ -35,6 +35,15 @@ void write(std::string const& draft, std::string const& file, Solution const& s)
     std::array<hsize_t, 2> const of_tips{s.tip_force.size(), 6};
     Dataset tips = put_array(root, "tip_forces", H5T_NATIVE_DOUBLE, wrenches.data(), of_tips);
     Dataset tip_chains = put_array(root, "tip_chains", chains);
+    if (!s.loop_force.empty()) {
+        std::vector<double> of_loops;
+        for (TipForce const& loop : s.loop_force)
+            of_loops.insert(of_loops.end(), loop.wrench.data, loop.wrench.data + 6);
+        std::array<hsize_t, 2> const loops_shape{s.loop_force.size(), 6};
+        Dataset loops =
+            put_array(root, "loop_forces", H5T_NATIVE_DOUBLE, of_loops.data(), loops_shape);
+        check(loops.close(), file, writing);
+    }
     if (!s.crosslink_tension.empty()) {
         Dataset tensions = put_array(root, "crosslink_tensions", s.crosslink_tension);
         check(tensions.close(), file, writing);

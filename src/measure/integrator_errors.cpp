@@ -56,7 +56,8 @@ std::vector<Integrator> integrators_of(Scene const& scene) {
     bool joint = true, absolute = true;
     for (ChainSpec const& chain : scene.chains) {
         joint = joint && chain.bodies.size() > 0;
-        absolute = absolute && !scene::joint_without_absolute_coordinates(chain);
+        absolute =
+            absolute && !chain.has_loops() && !scene::joint_without_absolute_coordinates(chain);
     }
     bool const implicit = springs_of(scene) == Springs::implicit;
     std::vector<Integrator> all;

@@ -55,6 +55,7 @@ Solution solution_of(ChainSystem& system) {
     Solution s;
     s.bead_force = a.bead_force;
     s.tip_force = a.tip_force;
+    s.loop_force = a.loop_force;
     s.crosslink_tension = a.crosslink_tension;
     if (system.communicator().rank() != 0) return s;
     std::size_t body = 0;

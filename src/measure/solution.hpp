@@ -27,6 +27,7 @@ struct Solution {
     // first entry of each body, then the number of entries
     std::vector<std::int64_t> force_offset;
     std::vector<TipForce> tip_force;        // one per chain with a jointed tip, in scene order
+    std::vector<TipForce> loop_force;       // one per loop, in scene order
     std::vector<double> crosslink_tension;  // one per cross-link, in scene order
     std::vector<Vec3> bead_acceleration;    // accelerations of all beads of bead chains, W
     std::vector<Vec3> bead_force;           // OpenMM's forces on the beads, W; empty without OpenMM

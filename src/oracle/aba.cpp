@@ -279,7 +279,7 @@ OracleResult<S> aba(ChainSpec const& chain, Loads const& loads) {
     if (chain.is_beads()) return aba_beads<S>(chain, loads);
     if (chain.is_linked())
         return chain.is_ring() ? dense<S>(chain, loads) : tridiagonal_linked<S>(chain, loads);
-    if (chain.tip == Tip::jointed && chain.size() > 0) return aba_with_tip<S>(chain, loads);
+    if (chain.is_closed() && chain.size() > 0) return aba_with_closures<S>(chain, loads);
     return aba_links(read_links<S>(chain, loads), lift<S>(loads.gravity));
 }
 

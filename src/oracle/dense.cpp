@@ -1,5 +1,3 @@
-#include <optional>
-
 #include "joints/joint_models.hpp"
 #include "oracle/system.hpp"
 
@@ -12,9 +10,9 @@ namespace {
 /// Body k and its inboard joint in ground axes.
 template <class S>
 struct Body {
-    M3<S> orientation;  // maps B to W
+    M3<S> orientation = M3<S>::identity();  // maps B to W
     /// Angular velocity, and vector from com to the body's origin, where the joint acts.
-    V3<S> omega, to_inboard;
+    V3<S> omega = V3<S>::zero(), to_inboard = V3<S>::zero();
     /// Relative acceleration across the joint that is not due to its coordinates' q''.
     Motion<S> closure;
     SpatialForce<S> given;          // wrench of the joint along its coordinates
@@ -48,7 +46,7 @@ class Assembly {
             if (!floats(link.type)) add_joint(k, b);
             bodies_.push_back(b);
         }
-        if (chain.tip == Tip::jointed) close_tip(chain);
+        close_loops(chain);
     }
 
     /// Returns the assembled system.
@@ -62,10 +60,16 @@ class Assembly {
             if (!links_[k].on_ground()) add_joint_end(inboard_of(k), to_outboard(k), b, S(-1), s);
             add_closure(b, s);
         }
-        if (tip_) {
-            add_joint_end(bodies_.back(), tip_->arm, tip_joint_, S(-1), s);
-            if (tip_->ring) add_joint_end(bodies_.front(), tip_->first_arm, tip_joint_, S(1), s);
-            add_closure(tip_joint_, s);
+        for (std::size_t i = 0; i < closures_.size(); ++i) {
+            TipClosure<S> const& c = closures_[i];
+            Body<S> const& joint = closing_joint_[i];
+            if (c.last_body >= 0)
+                add_joint_end(bodies_[static_cast<std::size_t>(c.last_body)], c.arm, joint, S(-1),
+                              s);
+            if (c.ring)
+                add_joint_end(bodies_[static_cast<std::size_t>(c.first_body)], c.first_arm, joint,
+                              S(1), s);
+            add_closure(joint, s);
         }
         return s;
     }
@@ -87,14 +91,15 @@ class Assembly {
             result.constraint_force[k] = constraint(b, x);
             result.joint_force[k] = result.constraint_force[k] + b.given;
         }
-        if (tip_) {
+        if (has_tip_) {
+            TipClosure<S> const& tip = closures_.front();
             std::vector<S> components;
-            for (std::size_t i = 0; i < tip_->locked.size(); ++i)
-                components.push_back(x[tip_joint_.joint + static_cast<Index>(i)]);
-            result.tip_force = tip_wrench(*tip_, components, tip_->frame);
-            if (tip_->ring)
+            for (std::size_t i = 0; i < tip.locked.size(); ++i)
+                components.push_back(x[closing_joint_.front().joint + static_cast<Index>(i)]);
+            result.tip_force = tip_wrench(tip, components, tip.frame);
+            if (tip.ring)
                 result.joint_force[0] = result.constraint_force[0] =
-                    wrench_on_first(*tip_, components, V3<S>::zero());
+                    wrench_on_first(tip, components, V3<S>::zero());
         }
         return result;
     }
@@ -116,13 +121,18 @@ class Assembly {
         size_ += static_cast<Index>(b.locked.size());
     }
 
-    /// Adds the constraint rows of the tip joint.
-    void close_tip(ChainSpec const& chain) {
-        tip_ = read_tip(chain, links_, attitude_);
-        tip_joint_.locked = tip_->locked;
-        tip_joint_.closure = tip_->closure;
-        tip_joint_.joint = size_;
-        size_ += static_cast<Index>(tip_->locked.size());
+    /// Adds the constraint rows of the tip joint and of loops.
+    void close_loops(ChainSpec const& chain) {
+        has_tip_ = chain.tip == Tip::jointed;
+        closures_ = read_closures(chain, links_, attitude_);
+        for (TipClosure<S> const& closure : closures_) {
+            Body<S> joint;
+            joint.locked = closure.locked;
+            joint.closure = closure.closure;
+            joint.joint = size_;
+            size_ += static_cast<Index>(closure.locked.size());
+            closing_joint_.push_back(joint);
+        }
     }
 
     /// Inboard body of joint k, which does not join to the ground.
@@ -203,8 +213,11 @@ class Assembly {
     std::vector<Link<S>> links_;
     std::vector<Attitude<S>> attitude_;
     std::vector<Body<S>> bodies_;
-    std::optional<TipClosure<S>> tip_;
-    Body<S> tip_joint_;  // only the joint's members are used
+    /// The tip, if there is one, and the loops, with their joints, of which only the joints'
+    /// members are used.
+    std::vector<TipClosure<S>> closures_;
+    std::vector<Body<S>> closing_joint_;
+    bool has_tip_ = false;
     V3<S> gravity_;
     Index size_ = 0;
 };

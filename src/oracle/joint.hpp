@@ -123,12 +123,16 @@ struct Attitude {
 template <class S>
 std::vector<Attitude<S>> attitudes(std::vector<Link<S>> const& links);
 
-/// Joint from the last body to the ground or to a ring's first body. Its outboard side is a frame
-/// G: fixed in the ground, or equal to the first body's axes B.
+/// Joint that closes a loop, from a last body to the ground or to a first body. Its outboard side
+/// is a frame G, fixed in the ground or in the first body. The last body of a loop may be the
+/// ground.
 template <class S>
 struct TipClosure {
+    /// True if there is a first body.
     bool ring = false;
-    /// Ring: vector from the first body's centre of mass to G's origin, W.
+    /// Index of the last body and, if there is one, of the first body; -1 for the ground.
+    std::int64_t last_body = -1, first_body = -1;
+    /// Vector from the first body's centre of mass to G's origin, W.
     V3<S> first_arm = V3<S>::zero();
     /// Vectors from the last body's centre of mass to the origins of G and of the joint frame, W.
     V3<S> arm, frame;
@@ -142,6 +146,10 @@ struct TipClosure {
 template <class S>
 TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links,
                        std::vector<Attitude<S>> const& attitude);
+/// Reads the jointed tip of a chain, if it has one, and then the joints of its loops.
+template <class S>
+std::vector<TipClosure<S>> read_closures(ChainSpec const& chain, std::vector<Link<S>> const& links,
+                                         std::vector<Attitude<S>> const& attitude);
 /// Motion of a body at one end of the tip joint, W.
 template <class S>
 struct TipEnd {
@@ -165,9 +173,9 @@ SpatialForce<S> wrench_on_first(TipClosure<S> const& tip, std::vector<S> const& 
 /// Articulated-body algorithm for an open chain.
 template <class S>
 OracleResult<S> aba_links(std::vector<Link<S>> const& links, V3<S> const& gravity);
-/// Articulated-body algorithm for a chain with a jointed tip.
+/// Articulated-body algorithm for a chain with a jointed tip or loops.
 template <class S>
-OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads);
+OracleResult<S> aba_with_closures(ChainSpec const& chain, Loads const& loads);
 
 /// Link between two beads, or from the anchor to bead 1.
 template <class S>

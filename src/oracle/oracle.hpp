@@ -76,8 +76,8 @@ struct OracleResult {
 /// body axes, about the joints, O(n). Accelerations are those of points, not Featherstone's spatial
 /// accelerations. Linear velocities then do not enter, and no large terms cancel far from the base.
 ///
-/// Beads have articulated 3 x 3 masses. With a jointed tip, the open chain is solved under the
-/// loads and under unit wrenches at the tip; a small system for the tip joint follows. Linked
+/// Beads have articulated 3 x 3 masses. With a jointed tip or loops, the open chain is solved under
+/// the loads and under unit wrenches at the tip; a small system for the tip joint follows. Linked
 /// bodies are solved by elimination in the scalar tridiagonal system of the link forces; their
 /// rings by dense(). A tip may constrain a chain redundantly (a planar chain whose joints already
 /// keep it in its plane). Accelerations are then unique, but joint forces are one choice of many.
@@ -119,7 +119,7 @@ Kinematics<Scalar> kinematics(ChainSpec const& chain, Loads const& loads);
 /// ratio of the chain. Prescribed motion takes any torque. A free base adds the force balance of
 /// the whole chain. Beads: `accelerations` are those of the beads, and the ratio measures the
 /// component of a link's force across the link. Jointed tips: the tip force is the least-squares
-/// fit. Throws ComputationError for linked bodies.
+/// fit. Throws ComputationError for linked bodies and for loops.
 ///
 /// The residual is information only, no measure of a solver at large n, because it grows with the
 /// condition number. Shapes: accelerations[k] as OracleResult::qdd (beads: com_acceleration).
@@ -137,8 +137,8 @@ Scalar rnea_residual(ChainSpec const& chain, Loads const& loads,
 double condition_estimate(ChainSpec const& chain, Loads const& loads = {});
 
 /// Makes the velocities (qd, free_base.velocity; beads and linked bodies: velocity, omega)
-/// consistent with a jointed tip and every link. The change has the least sum of squares, up to
-/// rounding. Joints with prescribed motion keep their rates at `time`.
+/// consistent with a jointed tip, loops and every link. The change has the least sum of squares, up
+/// to rounding. Joints with prescribed motion keep their rates at `time`.
 void project_velocities(ChainSpec& chain, double time = 0);
 
 #define CATENA_ORACLE(Scalar)                                                              \

@@ -15,41 +15,49 @@ Column<double> least_change(Dense<double> const& jacobian, Column<double> const&
     return -jacobian.completeOrthogonalDecomposition().solve(defect);
 }
 
-/// Velocity of the tip joint along its locked directions; zero if the velocities are consistent.
-Column<double> tip_velocity(TipClosure<double> const& tip, std::vector<Link<double>> const& links) {
-    std::vector<Attitude<double>> const all = attitudes(links);
-    Attitude<double> const &last = all.back(), &first = all.front();
-    Vec3 const to_g = tip.arm + last.orientation * links.back().com;
-    Vec3 omega = last.orientation * last.omega, velocity = last.velocity + cross(omega, to_g);
-    if (tip.ring) {
-        omega = omega - first.orientation * first.omega;
-        velocity = velocity - first.velocity;
-    }
-    Column<double> v(static_cast<Index>(tip.locked.size()));
-    for (Index i = 0; i < v.size(); ++i) {
-        Motion<double> const& d = tip.locked[static_cast<std::size_t>(i)];
-        v[i] = dot(d.angular, omega) + dot(d.linear, velocity);
-    }
-    return v;
+/// Motion of body k at `arm` from its centre of mass, W; zero for the ground.
+Motion<double> velocity_at(std::int64_t body, Vec3 const& arm,
+                           std::vector<Link<double>> const& links,
+                           std::vector<Attitude<double>> const& all) {
+    if (body < 0) return {};
+    auto const k = static_cast<std::size_t>(body);
+    Vec3 const omega = all[k].orientation * all[k].omega;
+    return {omega, all[k].velocity + cross(omega, arm + all[k].orientation * links[k].com)};
 }
 
-/// Projects the velocities of a joint chain with a jointed tip. Column i of the Jacobian is the tip
-/// velocity for a unit of velocity i.
+/// Velocities of tip and loops along their locked directions; zero if they are consistent.
+Column<double> velocity_of(std::vector<TipClosure<double>> const& closures,
+                           std::vector<Link<double>> const& links) {
+    std::vector<Attitude<double>> const all = attitudes(links);
+    std::vector<double> v;
+    for (TipClosure<double> const& c : closures) {
+        Motion<double> const last = velocity_at(c.last_body, c.arm, links, all),
+                             first = velocity_at(c.first_body, c.first_arm, links, all);
+        for (Motion<double> const& d : c.locked)
+            v.push_back(dot(d.angular, last.angular - first.angular) +
+                        dot(d.linear, last.linear - first.linear));
+    }
+    return Eigen::Map<Column<double> const>(v.data(), static_cast<Index>(v.size()));
+}
+
+/// Projects the velocities of a joint chain with a jointed tip or loops. Column i of the Jacobian
+/// is their velocity for a unit of velocity i.
 void project_bodies(ChainSpec& chain, double time) {
     Loads loads;
     loads.time = time;
     std::vector<Link<double>> const links = read_links<double>(chain, loads);
-    TipClosure<double> const tip = read_tip(chain, links, attitudes(links));
+    std::vector<TipClosure<double>> const closures = read_closures(chain, links, attitudes(links));
+    Column<double> const open = velocity_of(closures, links);
     std::vector<Link<double>> still = links;
     for (Link<double>& link : still) link.rate = link.slide = Vec3::zero();
     std::vector<double*> numbers;
-    Dense<double> jacobian(static_cast<Index>(tip.locked.size()), 0);
+    Dense<double> jacobian(open.size(), 0);
     auto const add = [&](double& number, std::size_t k, Motion<double> const& unit) {
         std::vector<Link<double>> one = still;
         one[k].rate = unit.angular;
         one[k].slide = unit.linear;
         jacobian.conservativeResize(Eigen::NoChange, jacobian.cols() + 1);
-        jacobian.col(jacobian.cols() - 1) = tip_velocity(tip, one);
+        jacobian.col(jacobian.cols() - 1) = velocity_of(closures, one);
         numbers.push_back(&number);
     };
     for (std::size_t k = 0; k < links.size(); ++k) {
@@ -63,7 +71,7 @@ void project_bodies(ChainSpec& chain, double time) {
         }
     }
     if (numbers.empty()) return;
-    Column<double> const change = least_change(jacobian, tip_velocity(tip, links));
+    Column<double> const change = least_change(jacobian, open);
     for (std::size_t i = 0; i < numbers.size(); ++i) *numbers[i] += change[static_cast<Index>(i)];
 }
 
@@ -148,7 +156,7 @@ void project_velocities(ChainSpec& chain, double time) {
             project_beads(chain);
         else if (chain.is_linked())
             project_linked(chain);
-        else if (chain.tip == Tip::jointed)
+        else if (chain.is_closed())
             project_bodies(chain, time);
     }
 }

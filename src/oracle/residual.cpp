@@ -163,8 +163,8 @@ template <class S>
 S rnea_residual(ChainSpec const& chain, Loads const& loads,
                 std::vector<Vector<S, 3>> const& accelerations,
                 Vector<S, 3> const& base_acceleration) {
-    if (chain.is_linked())
-        throw ComputationError("no inverse dynamics of linked bodies (" + chain.name +
+    if (chain.is_linked() || chain.has_loops())
+        throw ComputationError("no inverse dynamics of linked bodies and of loops (" + chain.name +
                                "): compare with the oracles' accelerations");
     return chain.is_beads() ? residual_of_beads(chain, loads, accelerations)
                             : residual_of_bodies(chain, loads, accelerations, base_acceleration);

@@ -1,4 +1,4 @@
-// Chains with a jointed tip: closure of the tip joint, and the wrench that satisfies it.
+// Chains with a jointed tip or loops: closure of their joints, and the wrenches that satisfy it.
 #include <cmath>
 
 #include "joints/joint_models.hpp"
@@ -19,77 +19,106 @@ Link<S> silent(Link<S> link) {
     return link;
 }
 
-/// Open chain under a wrench along the locked directions of its tip.
+/// Open chain under wrenches along the locked directions of the joints that close its loops. The
+/// components of these wrenches are numbered joint by joint.
 template <class S>
 class OpenChain {
   public:
     OpenChain(ChainSpec const& chain, Loads const& loads)
         : links_(read_links<S>(chain, loads)), gravity_(lift<S>(loads.gravity)) {
-        std::vector<Attitude<S>> const attitude = attitudes(links_);
-        tip_ = read_tip(chain, links_, attitude);
-        last_ = attitude.back().orientation, first_ = attitude.front().orientation;
-        omega_ = last_ * attitude.back().omega;
-        first_omega_ = first_ * attitude.front().omega;
+        attitude_ = attitudes(links_);
+        closures_ = read_closures(chain, links_, attitude_);
         for (Link<S> const& link : links_) silent_.push_back(silent(link));
+        for (TipClosure<S> const& closure : closures_) size_ += closure.locked.size();
     }
-    TipClosure<S> const& tip() const { return tip_; }
-    /// Solves the open chain under the given components of the tip wrench.
+    std::vector<TipClosure<S>> const& closures() const { return closures_; }
+    /// Number of locked directions.
+    std::size_t size() const { return size_; }
+    /// Components of one joint's wrench.
+    std::vector<S> of_joint(std::size_t joint, std::vector<S> const& components) const {
+        std::size_t begin = 0;
+        for (std::size_t i = 0; i < joint; ++i) begin += closures_[i].locked.size();
+        auto const first = components.begin() + static_cast<std::ptrdiff_t>(begin);
+        return {first, first + static_cast<std::ptrdiff_t>(closures_[joint].locked.size())};
+    }
+    /// Solves the open chain under the given components.
     OracleResult<S> solve(std::vector<S> const& components) const {
         return aba_links(pushed(links_, components), gravity_);
     }
-    /// Residual of the tip's closure.
-    Column<S> defect(OracleResult<S> const& r) const {
-        return as_column(tip_, omega_, first_omega_, r);
-    }
+    /// Residual of all closures.
+    Column<S> defect(OracleResult<S> const& r) const { return as_column(r, true); }
     /// Minus the change of `defect` per unit of component j; the matrix of all columns is symmetric
     /// and positive (semi)definite.
     Column<S> response(std::size_t j) const {
-        std::vector<S> components(tip_.locked.size(), S(0));
-        components[j] = S(1);
-        TipClosure<S> still = tip_;
-        still.closure = {};
-        return -as_column(still, V3<S>::zero(), V3<S>::zero(),
-                          aba_links(pushed(silent_, components), V3<S>::zero()));
+        return -as_column(aba_links(pushed(silent_, unit(j)), V3<S>::zero()), false);
     }
-
-    /// What response(j)[j] would be if the bodies at the tip were free. It is never less.
+    /// What response(j)[j] would be if the bodies at the joint were free. It is never less.
     S free_response(std::size_t j) const {
-        std::vector<S> components(tip_.locked.size(), S(0));
-        components[j] = S(1);
-        return mobility(links_.back(), last_, tip_wrench(tip_, components, V3<S>::zero())) +
-               mobility(links_.front(), first_, wrench_on_first(tip_, components, tip_.first_arm));
+        S sum(0);
+        push(unit(j), [&](std::size_t body, SpatialForce<S> const& f) {
+            sum += mobility(links_[body], attitude_[body].orientation, f);
+        });
+        return sum;
     }
 
   private:
+    std::vector<S> unit(std::size_t j) const {
+        std::vector<S> components(size_, S(0));
+        components[j] = S(1);
+        return components;
+    }
     /// Power of the acceleration that a wrench about the centre of mass gives a free body.
     static S mobility(Link<S> const& link, M3<S> const& orientation, SpatialForce<S> const& f) {
         V3<S> const torque = transposed_times(orientation, f.torque);
         return dot(torque, Cholesky<S, 3>(link.inertia).solve(torque)) +
                dot(f.force, f.force) / link.mass;
     }
-    /// Returns the links with the tip wrench added to the loads of the end bodies.
+    /// Calls on(body, wrench about its centre of mass) for the two bodies of every joint.
+    template <class On>
+    void push(std::vector<S> const& components, On const& on) const {
+        for (std::size_t i = 0; i < closures_.size(); ++i) {
+            TipClosure<S> const& c = closures_[i];
+            std::vector<S> const own = of_joint(i, components);
+            if (c.last_body >= 0)
+                on(static_cast<std::size_t>(c.last_body), tip_wrench(c, own, V3<S>::zero()));
+            if (c.ring)
+                on(static_cast<std::size_t>(c.first_body), wrench_on_first(c, own, c.first_arm));
+        }
+    }
+    /// Returns the links with the wrenches added to the loads of the bodies.
     std::vector<Link<S>> pushed(std::vector<Link<S>> links,
                                 std::vector<S> const& components) const {
-        SpatialForce<S> const f = tip_wrench(tip_, components, V3<S>::zero());
-        links.back().applied_torque = links.back().applied_torque + f.torque;
-        links.back().applied_force = links.back().applied_force + f.force;
-        SpatialForce<S> const on_first = wrench_on_first(tip_, components, tip_.first_arm);
-        links.front().applied_torque = links.front().applied_torque + on_first.torque;
-        links.front().applied_force = links.front().applied_force + on_first.force;
+        push(components, [&](std::size_t body, SpatialForce<S> const& f) {
+            links[body].applied_torque = links[body].applied_torque + f.torque;
+            links[body].applied_force = links[body].applied_force + f.force;
+        });
         return links;
     }
-    static Column<S> as_column(TipClosure<S> const& tip, V3<S> const& omega,
-                               V3<S> const& first_omega, OracleResult<S> const& r) {
-        std::vector<S> const d =
-            tip_defect<S>(tip, {r.com_acceleration.back(), r.alpha.back(), omega},
-                          {r.com_acceleration.front(), r.alpha.front(), first_omega});
-        return Eigen::Map<Column<S> const>(d.data(), static_cast<Index>(d.size()));
+    /// Motion of a body in a result, at rest unless `moving`; that of the ground is zero.
+    TipEnd<S> end(std::int64_t body, OracleResult<S> const& r, bool moving) const {
+        if (body < 0) return {V3<S>::zero(), V3<S>::zero(), V3<S>::zero()};
+        auto const k = static_cast<std::size_t>(body);
+        return {r.com_acceleration[k], r.alpha[k],
+                moving ? attitude_[k].orientation * attitude_[k].omega : V3<S>::zero()};
+    }
+    /// Residual of all closures; without the velocity terms unless `moving`.
+    Column<S> as_column(OracleResult<S> const& r, bool moving) const {
+        std::vector<S> all;
+        for (TipClosure<S> closure : closures_) {
+            if (!moving) closure.closure = {};
+            std::vector<S> const d =
+                tip_defect<S>(closure, end(closure.last_body, r, moving),
+                              end(closure.ring ? closure.first_body : -1, r, moving));
+            all.insert(all.end(), d.begin(), d.end());
+        }
+        return Eigen::Map<Column<S> const>(all.data(), static_cast<Index>(all.size()));
     }
 
     std::vector<Link<S>> links_, silent_;
-    V3<S> gravity_, omega_, first_omega_;
-    M3<S> last_, first_;
-    TipClosure<S> tip_;
+    std::vector<Attitude<S>> attitude_;
+    V3<S> gravity_;
+    std::vector<TipClosure<S>> closures_;
+    std::size_t size_ = 0;
 };
 
 /// System for the components of the tip wrench. Rows and columns are scaled to a unit diagonal, so
@@ -127,42 +156,45 @@ class TipSystem {
 
 }  // namespace
 
+namespace {
+
+/// Joint of a loop in the oracle's scalar.
 template <class S>
-TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links,
-                       std::vector<Attitude<S>> const& attitude) {
-    TipJoint const& j = chain.tip_joint;
-    Link<S> g;
-    JointShape<S> const shape{j.type,
-                              lift<S>(j.axis),
-                              lift<S>(j.first_axis),
-                              S(j.pitch),
-                              orthonormal<S>(j.rotation),
-                              lift<S>(j.translation),
-                              {S(j.q[0]), S(j.q[1]), S(j.q[2])},
-                              j.q};
-    place(shape, "tip", g);
-    Attitude<S> const &last = attitude.back(), &first = attitude.front();
-    // The first body of a ring determines the pose.
-    if (j.ring) {
-        g.rotation = transposed_times(last.orientation, first.orientation);
-        g.translation = transposed_times(last.orientation, first.origin - last.origin);
-        set_inboard_directions(shape, g);
-    }
+JointShape<S> shape_of(TipJoint const& j) {
+    return {j.type,
+            lift<S>(j.axis),
+            lift<S>(j.first_axis),
+            S(j.pitch),
+            orthonormal<S>(j.rotation),
+            lift<S>(j.translation),
+            {S(j.q[0]), S(j.q[1]), S(j.q[2])},
+            j.q};
+}
+
+/// The ground as a body.
+template <class S>
+Attitude<S> attitude_of_ground() {
+    return {M3<S>::identity(), V3<S>::zero(), V3<S>::zero(), V3<S>::zero()};
+}
+
+/// Closes a joint of the shape `shape` whose G moves as `end`. `g` has that pose relative to the
+/// last body; `com` is the centre of mass of the last body from its origin, B.
+template <class S>
+TipClosure<S> closed(JointShape<S> const& shape, Link<S> const& g, Attitude<S> const& last,
+                     V3<S> const& last_com, Attitude<S> const& end) {
     // The velocity of G relative to the last body, in G's axes, gives the joint rates.
     M3<S> const axes = last.orientation * g.rotation;  // axes of G in W
     V3<S> const omega = last.orientation * last.omega, to_g = last.orientation * g.translation;
-    V3<S> const com = last.orientation * links.back().com;
-    V3<S> const turning = j.ring ? first.orientation * first.omega : V3<S>::zero(),
-                moving_g = j.ring ? first.velocity : V3<S>::zero();
+    V3<S> const com = last.orientation * last_com;
     Motion<S> const relative{
-        transposed_times(axes, turning - omega),
-        transposed_times(axes, moving_g - (last.velocity + cross(omega, to_g)))};
+        transposed_times(axes, end.orientation * end.omega - omega),
+        transposed_times(axes, end.velocity - (last.velocity + cross(omega, to_g)))};
     V3<S> const rates = coordinates(g, relative);
     Motion<S> const moving = along(g, rates);
     // The closure consists of the Coriolis terms of the rates and of the universal joint's drift.
-    TipClosure<S> tip{
-        j.ring, V3<S>::zero(), to_g - com, last.orientation * shape.translation - com, {}, {}};
-    if (j.ring) tip.first_arm = -(first.orientation * links.front().com);
+    TipClosure<S> tip;
+    tip.arm = to_g - com;
+    tip.frame = last.orientation * shape.translation - com;
     V3<S> drift = V3<S>::zero();
     if (turns_twice(g.type))
         drift = S(rates[0] * rates[1]) * cross(g.free[0].angular, g.free[1].angular);
@@ -171,6 +203,73 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
     for (Motion<S> const& d : restricted(g))
         tip.locked.push_back({axes * d.angular, axes * d.linear});
     return tip;
+}
+
+/// Sets the pose of G relative to the last body, where it stands.
+template <class S>
+void stand(JointShape<S> const& shape, Attitude<S> const& last, Attitude<S> const& end,
+           Link<S>& g) {
+    g.rotation = transposed_times(last.orientation, end.orientation);
+    g.translation = transposed_times(last.orientation, end.origin - last.origin);
+    set_inboard_directions(shape, g);
+}
+
+/// Reads the joint of one loop.
+template <class S>
+TipClosure<S> read_loop(LoopClosure const& loop, std::vector<Link<S>> const& links,
+                        std::vector<Attitude<S>> const& attitude) {
+    auto const body = [&](std::int64_t k) {
+        return k < 0 ? attitude_of_ground<S>() : attitude[static_cast<std::size_t>(k)];
+    };
+    auto const com = [&](std::int64_t k) {
+        return k < 0 ? V3<S>::zero() : links[static_cast<std::size_t>(k)].com;
+    };
+    Attitude<S> const last = body(loop.inboard), first = body(loop.outboard);
+    M3<S> const turned = orthonormal<S>(loop.end_rotation);
+    V3<S> const at = lift<S>(loop.end_translation), omega = first.orientation * first.omega,
+                arm = first.orientation * at;
+    Attitude<S> const end{first.orientation * turned, transposed_times(turned, first.omega),
+                          first.origin + arm, first.velocity + cross(omega, arm)};
+    JointShape<S> const shape = shape_of<S>(loop.joint);
+    Link<S> g;
+    place(shape, "loop", g);
+    stand(shape, last, end, g);
+    TipClosure<S> closure = closed(shape, g, last, com(loop.inboard), end);
+    closure.ring = loop.outboard >= 0;
+    closure.last_body = loop.inboard;
+    closure.first_body = loop.outboard;
+    closure.first_arm = arm - first.orientation * com(loop.outboard);
+    return closure;
+}
+
+}  // namespace
+
+template <class S>
+TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links,
+                       std::vector<Attitude<S>> const& attitude) {
+    JointShape<S> const shape = shape_of<S>(chain.tip_joint);
+    bool const ring = chain.tip_joint.ring;
+    Link<S> g;
+    place(shape, "tip", g);
+    Attitude<S> const &last = attitude.back(), &first = attitude.front();
+    // The first body of a ring determines the pose.
+    if (ring) stand(shape, last, first, g);
+    TipClosure<S> tip =
+        closed(shape, g, last, links.back().com, ring ? first : attitude_of_ground<S>());
+    tip.ring = ring;
+    tip.last_body = static_cast<std::int64_t>(links.size()) - 1;
+    tip.first_body = ring ? 0 : -1;
+    if (ring) tip.first_arm = -(first.orientation * links.front().com);
+    return tip;
+}
+
+template <class S>
+std::vector<TipClosure<S>> read_closures(ChainSpec const& chain, std::vector<Link<S>> const& links,
+                                         std::vector<Attitude<S>> const& attitude) {
+    std::vector<TipClosure<S>> all;
+    if (chain.tip == Tip::jointed) all.push_back(read_tip(chain, links, attitude));
+    for (LoopClosure const& loop : chain.loops) all.push_back(read_loop(loop, links, attitude));
+    return all;
 }
 
 template <class S>
@@ -216,9 +315,9 @@ SpatialForce<S> wrench_on_first(TipClosure<S> const& tip, std::vector<S> const& 
 }
 
 template <class S>
-OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads) {
+OracleResult<S> aba_with_closures(ChainSpec const& chain, Loads const& loads) {
     OpenChain<S> const open(chain, loads);
-    std::size_t const m = open.tip().locked.size();
+    std::size_t const m = open.size();
     Dense<S> matrix(m, m);
     // Column j of the matrix is the open chain's response to a unit of component j.
     Column<S> free(m);
@@ -234,10 +333,13 @@ OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads) {
         system.correct(open.defect(result), components);
         result = open.solve(components);
     }
-    result.tip_force = tip_wrench(open.tip(), components, open.tip().frame);
-    if (open.tip().ring)
+    if (chain.tip != Tip::jointed) return result;
+    TipClosure<S> const& tip = open.closures().front();
+    std::vector<S> const own = open.of_joint(0, components);
+    result.tip_force = tip_wrench(tip, own, tip.frame);
+    if (tip.ring)
         result.joint_force[0] = result.constraint_force[0] =
-            wrench_on_first(open.tip(), components, V3<S>::zero());
+            wrench_on_first(tip, own, V3<S>::zero());
     return result;
 }
 
@@ -251,7 +353,9 @@ OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads) {
                                            V3<S> const&);                                    \
     template SpatialForce<S> wrench_on_first<S>(TipClosure<S> const&, std::vector<S> const&, \
                                                 V3<S> const&);                               \
-    template OracleResult<S> aba_with_tip<S>(ChainSpec const&, Loads const&);
+    template std::vector<TipClosure<S>> read_closures<S>(                                    \
+        ChainSpec const&, std::vector<Link<S>> const&, std::vector<Attitude<S>> const&);     \
+    template OracleResult<S> aba_with_closures<S>(ChainSpec const&, Loads const&);
 CATENA_ORACLE(double)
 CATENA_ORACLE(long double)
 CATENA_ORACLE(Quad)

@@ -7,6 +7,13 @@ namespace catena::scene {
 
 void translate(ChainSpec& chain, Vec3 const& by) {
     if (chain.tip_joint.anchor) chain.tip_joint.anchor = *chain.tip_joint.anchor + by;
+    for (LoopClosure& loop : chain.loops) {
+        if (loop.inboard == LoopClosure::ground)
+            loop.joint.translation = loop.joint.translation + by;
+        if (loop.outboard != LoopClosure::ground) continue;
+        loop.end_translation = loop.end_translation + by;
+        if (loop.joint.anchor) loop.joint.anchor = *loop.joint.anchor + by;
+    }
     for (Vec3& position : chain.beads.position) position = position + by;
     for (Vec3& position : chain.linked.position) position = position + by;
     bool const fixed = chain.base == Base::fixed;

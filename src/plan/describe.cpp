@@ -8,6 +8,7 @@
 #include "scene/alike_chains.hpp"
 #include "scene/branches.hpp"
 #include "scene/freedom.hpp"
+#include "scene/loops.hpp"
 
 namespace catena::command {
 namespace {
@@ -35,6 +36,13 @@ std::string crosslinks_text(ChainSpec const& chain) {
     return fmt::format(" with {} cross-link{}", count, count == 1 ? "" : "s");
 }
 
+/// Number of loops in words, with a blank before them; empty without any.
+std::string loops_text(ChainSpec const& chain) {
+    std::size_t const count = chain.loops.size();
+    if (count == 0) return {};
+    return fmt::format(" with {} loop{}", count, count == 1 ? "" : "s");
+}
+
 Table chain_table(Scene const& scene) {
     Table table({"chain", "copies", "bodies", "of", "base", "tip", "handles"}, {0, 3, 4, 5, 6});
     std::size_t constexpr most_rows = 20;
@@ -50,7 +58,8 @@ Table chain_table(Scene const& scene) {
                        : scene.name_in_file(i) + " .. " + scene.name_in_file(i + count - 1);
         table.add({name, std::to_string(count), std::to_string(first.size()),
                    (first.is_branched() ? "branched " : "") +
-                       std::string(scene::contents_of(first)) + crosslinks_text(first),
+                       std::string(scene::contents_of(first)) + crosslinks_text(first) +
+                       loops_text(first),
                    base_name(first), scene::tip_name(first), kind_name(first)});
     }
     return table;
@@ -70,6 +79,10 @@ Json chains_json(Scene const& scene) {
         if (chain.is_cross_linked())
             list.back()["crosslinks"] = {{"count", chain.crosslinks.size()},
                                          {"redundant_links", chain.redundant_links}};
+        if (chain.has_loops())
+            list.back()["loops"] = {{"count", chain.loops.size()},
+                                    {"directions", scene::directions_of_loops(chain)},
+                                    {"redundant_directions", chain.redundant_directions}};
     }
     return list;
 }

@@ -77,9 +77,9 @@ std::string text_of(plan::StepWork const& work, Scene const& scene) {
     add(work.closings, "projection sweep", "projection sweeps");
     add(work.noises, "thermostat noise", "thermostat noises");
     std::string const text = fmt::format("{}", fmt::join(parts, ", "));
-    return has_jointed_tips(scene) && !work.absolute()
-               ? text +
-                     fmt::format("; {} corrections of jointed tips", usual_sweeps(scene.dynamics))
+    return has_closures(scene) && !work.absolute()
+               ? text + fmt::format("; {} corrections of jointed tips and loops",
+                                    usual_sweeps(scene.dynamics))
                : text;
 }
 /// Converts the work of a step to JSON.

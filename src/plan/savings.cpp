@@ -109,7 +109,7 @@ class List {
     /// Adds what chains of rigid bodies do without.
     void add_bodies(ChainGroup const& group, Family const& family, std::size_t share) {
         if (group.axes == Axes::joint) {
-            if (!group.ends.has_tips() && !group.carried.in_scene &&
+            if (!group.has_closures() && !group.carried.in_scene &&
                 !some_acts([](auto term) { return term.uses_positions; })) {
                 add("positions and linear velocities of bodies: nothing in the scene depends on "
                     "them; computed for output and energies only",

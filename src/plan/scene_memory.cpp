@@ -11,6 +11,7 @@
 #include "scene/branch_limits.hpp"
 #include "scene/branches.hpp"
 #include "scene/freedom.hpp"
+#include "scene/loops.hpp"
 #include "terms/force_terms.hpp"
 #include "tree/branches.hpp"
 
@@ -125,6 +126,13 @@ double bytes_of_crosslinks(ChainSpec const& chain) {
     return sizeof(double) * (6 * static_cast<double>(chain.size()) + 2 * count * count);
 }
 
+/// Returns the bytes that loops add: four vectors per body, and two matrices.
+double bytes_of_loops(ChainSpec const& chain) {
+    if (!chain.has_loops()) return 0;
+    auto const count = static_cast<double>(scene::directions_of_loops(chain));
+    return sizeof(double) * (12 * static_cast<double>(chain.size()) + 2 * count * count);
+}
+
 /// Returns the bytes of a chain's scene data, which every rank holds.
 double scene_bytes(ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
@@ -177,6 +185,7 @@ Memory memory_of(Scene const& scene, int ranks) {
             chain.is_beads() ? bead_numbers : body_numbers + numbers_of(scene.dynamics, stands);
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / sharing;
+        m.solver += bytes_of_loops(chain) / sharing;
         if (scene::goes_by_paths(chain)) {
             m.solver +=
                 (bytes_of_branches(chain, pairwise, size) + bytes_of_crosslinks(chain)) / sharing;

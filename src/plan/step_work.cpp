@@ -65,7 +65,7 @@ StepWork work_of_step(Scene const& scene, int sweeps) {
                 .closings = step.drifts() * sweeps,
                 .noises = step.langevin ? 1 : 0};
     }
-    bool const tips = has_jointed_tips(scene);
+    bool const tips = has_closures(scene);
     auto const [matrices, biases, closings] = sweeps_a_step(d, tips);
     int const corrections = tips ? closings * (sweeps + 1) : 0,
               refinements = matrices * scene.solver.refine;

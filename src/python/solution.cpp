@@ -47,6 +47,9 @@ void add_solution(nb::module_& module) {
                      [](Self self) { return torques_of(at(self).joint_force, self); })
         .def_prop_ro("tip_forces", [](Self self) { return forces_of(at(self).tip_force, self); })
         .def_prop_ro("tip_torques", [](Self self) { return torques_of(at(self).tip_force, self); })
+        .def_prop_ro("loop_forces", [](Self self) { return forces_of(at(self).loop_force, self); })
+        .def_prop_ro("loop_torques",
+                     [](Self self) { return torques_of(at(self).loop_force, self); })
         .def_ro("residual", &SolverResult::residual)
         .def_ro("residual_bound", &SolverResult::residual_bound)
         .def_ro("error", &SolverResult::error)

@@ -13,6 +13,7 @@
 #include "bodies/bodies.hpp"
 #include "bodies/crosslinks.hpp"
 #include "bodies/hdf5_bodies.hpp"
+#include "bodies/loops.hpp"
 #include "generate/conformation.hpp"
 #include "generate/crosslinks.hpp"
 #include "generate/start_fit.hpp"
@@ -449,6 +450,8 @@ class ChainReader {
         if (chain.is_branched()) request_.protein_ends = {false, false};
         refuse_ring_of_generated(chain, tip_, request_, source_);
         join_tip(chain, tip_, request_);
+        if (Node const* const loops = request_.fields.find("loops"))
+            close_loops(chain, *loops, request_.scene);
         open_crosslinks_ = cross_link(chain, request_, source_, copy > 0);
         note_joined_ends(chain, request_);
         if (planar) refuse_unparallel(chain, source_, *planar);

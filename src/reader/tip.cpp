@@ -214,12 +214,14 @@ bool has_given_rates(ChainSpec const& chain) {
 }  // namespace
 
 void note_lost_rates(ChainSpec const& chain, ChainRequest const& request) {
-    if (chain.is_beads() || chain.is_linked() || chain.tip == Tip::free) return;
+    if (chain.is_beads() || chain.is_linked() || !chain.is_closed()) return;
     if (degrees_of_freedom(chain) > 0 || !has_given_rates(chain)) return;
-    request.scene.note(fmt::format(
-        "the loop of chain `{}` has no degrees of freedom by the count of its joints: given rates "
-        "(`qd`) that it cannot follow vanish at the start",
-        shown(request.name())));
+    request.scene.note(
+        fmt::format("the loop{} of chain `{}` ha{} no degrees of freedom by the count of {} "
+                    "joints: given rates "
+                    "(`qd`) that it cannot follow vanish at the start",
+                    chain.loops.size() > 1 ? "s" : "", shown(request.name()),
+                    chain.loops.size() > 1 ? "ve" : "s", chain.loops.size() > 1 ? "their" : "its"));
 }
 
 ReadTip read_tip(Fields const& chain) {

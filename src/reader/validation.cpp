@@ -114,6 +114,11 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
             fmt::format("integrator {} moves no branched chains of rigid bodies, chain `{}` is one",
                         name_of(integrator), shown(chain.name)),
             joint_integrators);
+    if (chain.has_loops())
+        fail(at,
+             fmt::format("integrator {} works in absolute coordinates, chain `{}` has loops",
+                         name_of(integrator), shown(chain.name)),
+             joint_integrators);
     if (auto const odd = joint_without_absolute_coordinates(chain)) {
         std::string const place =
             odd->first < chain.bodies.size() ? fmt::format("joint {}", odd->first + 1) : "its tip";
@@ -144,6 +149,7 @@ void check_handles(Node const& root, Scene const& scene, Draft const& draft, boo
     ChainSpec const& chain = draft.chain;
     char const* const why = chain.bodies.size() == 0 ? "has links"
                             : chain.is_ring()        ? "is a ring"
+                            : chain.has_loops()      ? "has loops"
                                                      : "has a jointed tip";
     fail(*root.find("solver")->find("handles"),
          fmt::format("articulated handles for chain `{}`, which {}", shown(chain.name), why),
@@ -230,6 +236,9 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
     if (is_body_tree(draft.chain))
         fail(at, "thermal velocities for a branched chain of rigid bodies",
              "write `velocities: zero`, or give each joint its `qd`; `integrator: baoab` warms it");
+    if (draft.chain.has_loops())
+        fail(at, "thermal velocities in a chain with loops",
+             "write `velocities: zero`, or give each joint its `qd`");
     if (auto const odd = joint_without_absolute_coordinates(draft.chain))
         fail(at, fmt::format("thermal velocities for {} joints", name_of(odd->second)),
              "write `velocities: zero`, or give each joint its `qd`");
@@ -333,8 +342,8 @@ void check_end_to_end(Node const& root, OutputSpec const& output,
          "leave it out; `radius_of_gyration` is their size");
 }
 
-/// Notes that trajectories have no forces of cross-links.
-void note_crosslink_forces(Scene& scene, std::vector<Draft> const& drafts) {
+/// Notes that trajectories have no forces of cross-links and loops.
+void note_forces_left_out(Scene& scene, std::vector<Draft> const& drafts) {
     auto const linked = std::find_if(drafts.begin(), drafts.end(),
                                      [](Draft const& d) { return d.chain.is_cross_linked(); });
     if (scene.output.joint_forces && linked != drafts.end())
@@ -342,6 +351,13 @@ void note_crosslink_forces(Scene& scene, std::vector<Draft> const& drafts) {
             fmt::format("`joint_forces` leaves out the forces of cross-links, of chain `{}` for "
                         "one: `catena solve --json` gives those of a start",
                         shown(linked->chain.name)));
+    auto const looped = std::find_if(drafts.begin(), drafts.end(),
+                                     [](Draft const& d) { return d.chain.has_loops(); });
+    if (scene.output.joint_forces && looped != drafts.end())
+        scene.note(
+            fmt::format("`joint_forces` leaves out the forces of loops, of chain `{}` for "
+                        "one: `catena solve --json` gives those of a start",
+                        shown(looped->chain.name)));
 }
 
 }  // namespace
@@ -365,7 +381,7 @@ void check_together(Node const& root, Scene& scene, std::vector<Draft> const& dr
     set_handles(root, scene, drafts);
     check_temperature(root, scene.output, scene.dynamics, drafts);
     check_end_to_end(root, scene.output, drafts);
-    note_crosslink_forces(scene, drafts);
+    note_forces_left_out(scene, drafts);
     if (scene.forces.openmm) check_openmm(root, scene, drafts);
 }
 

@@ -131,7 +131,7 @@ Json speed_of(SummarySource const& of) {
 Json constraints_of(SummarySource const& of) {
     auto const& groups = of.system.groups();
     bool const tips = std::any_of(groups.begin(), groups.end(),
-                                  [](auto const& group) { return group->ends.has_tips(); });
+                                  [](auto const& group) { return group->has_closures(); });
     if (of.system.absolute().empty() && !tips) return nullptr;
     return {{"largest_error", of.verdict.largest_error()},
             {"tolerance", of.scene.dynamics.constraint_tolerance}};

@@ -86,7 +86,7 @@ Cut cut_of(ChainGroup const& group, GatherWay const& way) {
 
 StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
     : integrator_(scene.dynamics.integrator),
-      sweeps_(sweeps_a_step(scene.dynamics, has_jointed_tips(scene))),
+      sweeps_(sweeps_a_step(scene.dynamics, has_closures(scene))),
       directions_(group.directions),
       articulated_(group.handles == Handles::articulated),
       absolute_(group.beads || group.linked || group.axes == Axes::world),
@@ -94,7 +94,7 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
       implicit_(!group.joints.implicit.empty()),
       linked_(group.linked),
       moving_meeting_(group.joints.moving_meeting()),
-      tips_(group.ends.has_tips()),
+      tips_(group.has_closures()),
       fixman_(scene.dynamics.fixman),
       at_once_(!keeps_matrices(scene) && solves_at_once(group)),
       refinements_(scene.solver.refine) {

@@ -17,10 +17,16 @@ bool joins_the_same(CrossLink const& a, CrossLink const& b) {
     return a.inboard == b.inboard && a.outboard == b.outboard;
 }
 
+bool closes_the_same(LoopClosure const& a, LoopClosure const& b) {
+    return a.inboard == b.inboard && a.outboard == b.outboard && a.joint.type == b.joint.type;
+}
+
 bool alike(ChainSpec const& a, ChainSpec const& b) {
     return a.size() == b.size() && a.parent == b.parent && a.base == b.base &&
            std::equal(a.crosslinks.begin(), a.crosslinks.end(), b.crosslinks.begin(),
                       b.crosslinks.end(), joins_the_same) &&
+           std::equal(a.loops.begin(), a.loops.end(), b.loops.begin(), b.loops.end(),
+                      closes_the_same) &&
            std::string_view(contents_of(a)) == contents_of(b) && a.tip == b.tip &&
            (a.tip == Tip::free || tip_name(a) == tip_name(b)) && handle_kind(a) == handle_kind(b);
 }
@@ -40,6 +46,9 @@ std::string text_of(Scene const& scene, AlikeChains const& run) {
     if (first.is_cross_linked())
         text += fmt::format(" with {} cross-link{}{}", first.crosslinks.size(),
                             first.crosslinks.size() == 1 ? "" : "s", run.count == 1 ? "" : " each");
+    if (first.has_loops())
+        text += fmt::format(" with {} loop{}{}", first.loops.size(),
+                            first.loops.size() == 1 ? "" : "s", run.count == 1 ? "" : " each");
     std::string const name = scene.name_in_file(run.first);
     return text + (run.count == 1 ? fmt::format(" ({})", name)
                                   : fmt::format(" ({} to {})", name,

@@ -7,6 +7,7 @@
 
 #include "joints/joint_models.hpp"
 #include "scene/loop_motions.hpp"
+#include "scene/loops.hpp"
 
 namespace catena::scene {
 
@@ -72,13 +73,13 @@ bool any_slides(ChainSpec const& chain) {
            (chain.tip == Tip::jointed && slides(chain.tip_joint.type));
 }
 
-/// True for an unbranched chain of revolute joints from the ground on that rotates about one axis,
-/// in one plane. The tolerance is rounding, because planar handles omit all motion out of the
-/// plane.
+/// True for an unbranched open chain of revolute joints from the ground on, or one with a jointed
+/// tip, that rotates about one axis, in one plane. Loops need forces along all directions. The
+/// tolerance is rounding, because planar handles omit all motion out of the plane.
 bool is_planar(ChainSpec const& chain) {
     std::size_t odd = 0;
-    return chain.base == Base::fixed && !chain.is_branched() && !any_slides(chain) &&
-           parallel_within(rounding, chain, odd);
+    return chain.base == Base::fixed && !chain.has_loops() && !chain.is_branched() &&
+           !any_slides(chain) && parallel_within(rounding, chain, odd);
 }
 
 std::int64_t freedom_of_links(ChainSpec const& chain) {
@@ -144,13 +145,14 @@ char const* name_of(HandleKind kind) {
 }
 
 bool takes_articulated_handles(ChainSpec const& chain) {
-    return chain.bodies.size() > 0 && chain.tip == Tip::free;
+    return chain.bodies.size() > 0 && !chain.is_closed();
 }
 
 std::int64_t degrees_of_freedom(ChainSpec const& chain) {
     if (chain.is_beads() || chain.is_linked()) return freedom_of_links(chain);
     BodyArrays const& bodies = chain.bodies;
     std::int64_t dof = chain.tip == Tip::free ? 0 : -restricted_by_tip(chain);
+    dof -= directions_of_loops(chain) - chain.redundant_directions;
     for (JointType const joint : bodies.joint) dof += coordinates_of(joint);
     for (DrivenJoint const& driven : bodies.driven)
         dof -= coordinates_of(bodies.joint[static_cast<std::size_t>(driven.body)]);

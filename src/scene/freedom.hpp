@@ -50,8 +50,8 @@ char const* name_of(HandleKind kind);
 bool takes_articulated_handles(ChainSpec const& chain);
 
 /// Number of coordinates of the joints without prescribed motion, less the directions that the
-/// tip's joint restricts. Links: 6 per rigid body, 3 per bead, less one per link that is not
-/// redundant (ChainSpec::redundant_links).
+/// tip's joint and loops restrict, redundant ones left out. Links: 6 per rigid body, 3 per bead,
+/// less one per link that is not redundant (ChainSpec::redundant_links).
 std::int64_t degrees_of_freedom(ChainSpec const& chain);
 
 /// First joint (from 0) that absolute coordinates do not support; they support links and spherical

@@ -193,6 +193,22 @@ struct CrossLink {
     bool operator==(CrossLink const&) const = default;
 };
 
+/// Joint between two bodies of a chain, or a body and the ground, beside the inboard joints. The
+/// joint frame J is fixed in the inboard body. The frame G, in the role of an outboard body's
+/// frame, is fixed in the outboard body.
+struct LoopClosure {
+    /// Stands for the ground in the place of a body; its frame is W.
+    static constexpr std::int64_t ground = -1;
+    /// Bodies, counted from 0 within their chain.
+    std::int64_t inboard = ground, outboard = ground;
+    /// Joint with its frame J in the inboard body, and its position at the start. It is no ring.
+    /// Its anchor is G's origin in the outboard body, if the scene gives that.
+    TipJoint joint;
+    /// Orientation and origin of G in the outboard body.
+    Mat3 end_rotation = Mat3::identity();
+    Vec3 end_translation = Vec3::zero();
+};
+
 /// Numbers that a force term without arrays of its own keeps for each body of a chain.
 struct TermNumbers {
     std::string term;  // Name of the term (src/terms).
@@ -221,6 +237,11 @@ struct ChainSpec {
     /// Number of links, cross-links included, that keep their length at the start because the
     /// others do. They take no degree of freedom.
     std::int64_t redundant_links = 0;
+    /// Joints that close loops of rigid bodies, in the order of the scene.
+    std::vector<LoopClosure> loops = {};
+    /// Number of directions that loops restrict at the start although other joints of the chain
+    /// restrict them already. They take no degree of freedom.
+    std::int64_t redundant_directions = 0;
     /// Chain identifiers and residue numbers of the beads, for topology files; empty unless a
     /// structure file gives them.
     Members members = {};
@@ -231,6 +252,9 @@ struct ChainSpec {
     bool is_linked() const { return linked.size() > 0; }
     bool is_branched() const { return !parent.empty(); }
     bool is_cross_linked() const { return !crosslinks.empty(); }
+    bool has_loops() const { return !loops.empty(); }
+    /// True if the chain has a jointed tip or loops.
+    bool is_closed() const { return tip == Tip::jointed || has_loops(); }
     bool is_ring() const { return tip == Tip::jointed && tip_joint.ring; }
     std::size_t size() const { return beads.size() + bodies.size() + linked.size(); }
     CarriedBeads const& carried() const { return is_linked() ? linked.carried : bodies.carried; }

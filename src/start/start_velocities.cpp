@@ -13,7 +13,7 @@ namespace {
 
 bool is_thermal(ChainSpec const& chain) { return chain.velocities == StartVelocities::thermal; }
 bool has_absolute_coordinates(ChainSpec const& chain) {
-    return !scene::joint_without_absolute_coordinates(chain);
+    return !chain.has_loops() && !scene::joint_without_absolute_coordinates(chain);
 }
 
 /// State in absolute coordinates of every body of the scene, on every rank.

@@ -41,30 +41,33 @@ void add_dynamics(Values& values, DynamicsSpec const& d) {
     if (d.tolerance > 0) add(values, "dynamics.tolerance", d.tolerance);
 }
 
-/// Adds the fingerprints of chains. `holds_start` is true if the ground holds a tip at its start
+/// Adds the fingerprints of chains. `keeps_start` is true if a joint's frame is fixed at its start
 /// placement, which makes start positions fixed.
 void add_prints(Values& values, std::string const& whose, ChainPrints const& prints,
-                bool holds_start) {
+                bool keeps_start) {
     add(values, whose + ", bodies and joints", prints.kind, Role::fixed);
     add(values, whose + ", springs and loads", prints.loads);
     add(values, whose + ", start positions", prints.positions,
-        holds_start ? Role::fixed : Role::start);
+        keeps_start ? Role::fixed : Role::start);
     add(values, whose + ", start velocities", prints.velocities, Role::start);
 }
 
-/// True if a joint attaches the tip to the ground.
-bool has_held_tip(ChainSpec const& chain) { return chain.tip == Tip::jointed && !chain.is_ring(); }
+/// True if the start places a frame of a joint that attaches the tip to the ground or closes a
+/// loop.
+bool holds_start(ChainSpec const& chain) {
+    return (chain.tip == Tip::jointed && !chain.is_ring()) || chain.has_loops();
+}
 
 void add_chains(Values& values, std::span<ChainSpec const> chains) {
     add(values, "chains", chains.size(), Role::fixed);
     std::size_t const single = std::min(chains.size(), most_single_chains);
     for (std::size_t i = 0; i < single; ++i)
         add_prints(values, "chain " + std::to_string(i + 1), prints_of(chains.subspan(i, 1)),
-                   has_held_tip(chains[i]));
+                   holds_start(chains[i]));
     std::span<ChainSpec const> const further = chains.subspan(single);
     if (further.empty()) return;
     add_prints(values, "chains from " + std::to_string(single + 1) + " on", prints_of(further),
-               std::any_of(further.begin(), further.end(), has_held_tip));
+               std::any_of(further.begin(), further.end(), holds_start));
 }
 
 }  // namespace

@@ -78,7 +78,10 @@ std::string why_host_alone(Scene const& scene) {
     bool const trees =
         std::any_of(scene.chains.begin(), scene.chains.end(),
                     [](ChainSpec const& c) { return c.is_branched() && c.bodies.size() > 0; });
-    return trees ? "branched chains of rigid bodies are computed on the host" : "";
+    if (trees) return "branched chains of rigid bodies are computed on the host";
+    bool const loops = std::any_of(scene.chains.begin(), scene.chains.end(),
+                                   [](ChainSpec const& c) { return c.has_loops(); });
+    return loops ? "chains with `loops` are computed on the host" : "";
 }
 
 std::vector<char const*> keys_beside(std::initializer_list<char const*> before,

@@ -32,6 +32,15 @@ void add_tip(Fingerprint& print, TipJoint const& t) {
     add_named(print, "ring", t.ring);
 }
 
+/// Adds what the scene says of loops; their frames G follow from the start.
+void add_loops(Fingerprint& print, ChainSpec const& chain) {
+    for (LoopClosure const& loop : chain.loops) {
+        print.add(std::string("loop"));
+        print.add_each(loop.inboard, loop.outboard);
+        add_tip(print, loop.joint);
+    }
+}
+
 void add_driven(Fingerprint& print, std::vector<DrivenJoint> const& driven) {
     for (DrivenJoint const& joint : driven) {
         print.add(std::string("driven"));
@@ -86,6 +95,7 @@ void add_chain(Fingerprint& print, ChainSpec const& chain) {
     if (chain.tip == Tip::jointed) add_tip(print, chain.tip_joint);
     add_named(print, "parents", chain.is_branched(), chain.parent);
     add_crosslinks(print, chain);
+    add_loops(print, chain);
     add_term_numbers(print, chain);
 }
 
@@ -132,6 +142,7 @@ void add_kind(Fingerprint& print, ChainSpec const& chain) {
     if (chain.tip == Tip::jointed) add_tip(print, chain.tip_joint);
     add_named(print, "parents", chain.is_branched(), chain.parent);
     add_crosslinks(print, chain);
+    add_loops(print, chain);
 }
 
 void add_loads(Fingerprint& print, ChainSpec const& chain) {

@@ -4,6 +4,7 @@
 
 #include "joints/joint_models.hpp"
 #include "oracle/oracle.hpp"
+#include "scene/loops.hpp"
 #include "scene/pose.hpp"
 
 namespace catena::test {
@@ -277,6 +278,30 @@ ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options) {
     options.ring ? join_to_first(chain, tip, options.time)
                  : join_to_ground(chain, tip, options.time);
     return chain;
+}
+
+void add_random_loops(ChainSpec& chain, std::uint64_t seed, std::size_t count, JointType type) {
+    Random random(seed);
+    std::vector<scene::Pose> const poses = scene::start_poses(chain);
+    auto const body = [&] {  // from the ground on
+        return static_cast<std::int64_t>(random.uniform() * static_cast<double>(chain.size() + 1)) -
+               1;
+    };
+    while (chain.loops.size() < count) {
+        LoopClosure loop;
+        loop.inboard = body();
+        loop.outboard = body();
+        if (loop.inboard == loop.outboard) continue;
+        loop.joint = random_tip(random, {.tip = type});
+        scene::Pose const held = scene::held_frame(poses, loop),
+                          end = scene::pose_at(poses, loop.outboard);
+        loop.end_rotation = to_matrix(conjugate(end.orientation) * held.orientation);
+        loop.end_translation =
+            transposed_times(to_matrix(end.orientation), held.origin - end.origin);
+        chain.loops.push_back(loop);
+    }
+    chain.redundant_directions = scene::redundant_directions(chain);
+    oracle::project_velocities(chain);
 }
 
 ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base, Tip tip) {

@@ -64,6 +64,10 @@ RandomChainOptions options_in_turn(std::uint64_t seed, std::size_t most);
 /// Rigid bodies of mass 0.3 .. 3, size about 0.3, any shape a real body can have.
 ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options);
 
+/// Adds `count` loops with joints of one type between random bodies of an open chain, or a body and
+/// the ground. Velocities are made to fit.
+void add_random_loops(ChainSpec&, std::uint64_t seed, std::size_t count, JointType);
+
 /// Point beads of mass 0.3 .. 3 on links of 0.2 .. 0.6; velocities keep the lengths to rounding. A
 /// jointed tip: a link of that size from the last bead to the ground.
 ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base, Tip tip = Tip::free);

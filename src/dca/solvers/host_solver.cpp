@@ -1,6 +1,7 @@
 // The selection of the host solver of a group of chains.
 #include "dca/solvers/crosslinked_solver.hpp"
 #include "dca/solvers/joint_solver.hpp"
+#include "dca/solvers/looped_solver.hpp"
 
 namespace catena {
 namespace dca {
@@ -19,8 +20,10 @@ std::unique_ptr<ChainSolver> make_body_tree_solver(ChainGroup const&, Executor c
 
 }  // namespace dca
 
-/// Selects the host solver by handles, coordinates and number of directions.
-std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor const& executor,
+namespace {
+
+/// Selects the host solver of chains without loops, or with their loops open.
+std::unique_ptr<ChainSolver> make_open_solver(ChainGroup const& group, Executor const& executor,
                                               Communicator const& communicator) {
     if (group.is_branched() && !group.beads)
         return dca::make_body_tree_solver(group, executor, communicator);
@@ -45,6 +48,16 @@ std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor 
     return group.joints.has_screws
                ? dca::make_joint_solver<6, true>(group, executor, communicator)
                : dca::make_joint_solver<6, false>(group, executor, communicator);
+}
+
+}  // namespace
+
+/// Selects the host solver by handles, coordinates, number of directions and loops.
+std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor const& executor,
+                                              Communicator const& communicator) {
+    auto open = make_open_solver(group, executor, communicator);
+    if (!group.has_loops) return open;
+    return std::make_unique<dca::LoopedSolver>(group, std::move(open));
 }
 
 }  // namespace catena

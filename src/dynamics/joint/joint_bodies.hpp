@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dca/host_space.hpp"
+#include "dynamics/joint/closed_loops.hpp"
 #include "dynamics/joint/joint_lanes.hpp"
 #include "dynamics/joint/joint_loads_in.hpp"
 #include "dynamics/joint/joint_motion_in.hpp"
@@ -44,10 +45,11 @@ class JointBodies {
           state(group, g.clock),
           motion(group, space, communicator, g.given),
           tips(group, g.scene, space, communicator, g.reach),
+          closed_loops(group, g.reach),
           loads(group, g.given, space, solver.eliminates_revolute_joints(),
                 rotor_of_spring(g.scene.dynamics.integrator), g.implicit_step),
           solution(group, solver.eliminates_revolute_joints()),
-          zero(group.ends.has_tips() ? group.size : 0),
+          zero(group.has_closures() ? group.size : 0),
           pieces_(local_pieces(group, g.scene)),
           pieces(pieces_) {
         if constexpr (has_lanes)
@@ -95,15 +97,18 @@ class JointBodies {
     /// Configuration for the solver.
     ConfigurationView configuration() {
         MotionView const m = motion.view();
-        return {{},      m.joint_turn,
-                {},      m.r2,
-                m.axes2, loads.implicit ? loads.implicit.compliance().view() : View<6>{}};
+        ConfigurationView all{
+            {},   m.joint_turn, {},
+            m.r2, m.axes2,      loads.implicit ? loads.implicit.compliance().view() : View<6>{}};
+        all.loop_ends = closed_loops.ends().data();
+        return all;
     }
     /// Loads for the solver; views without origin are left to it.
     LoadsView given_to_solver() {
         MotionView const m = motion.view();
         LoadsView all{loads.torque.view(), loads.has_forces ? loads.force.view() : View<3>{},
                       m.omega, loads.bias.view(), of_tips(group, tips.bias())};
+        all.loop_bias = closed_loops.bias().data();
         if (!loads.leaves_loads()) return all;
         if (loads.leaves_torques()) all.torque = {};
         all.gyroscopic = loads.leaves_torques();
@@ -178,10 +183,11 @@ class JointBodies {
     JointStateIn<Space> state;
     JointMotionIn<Space> motion;
     JointedTipsIn<Space> tips;
+    ClosedLoops closed_loops;  // On the host; no chains with loops are elsewhere.
     JointLoadsIn<Space> loads;
     JointSolutionIn<Space> solution;
     std::optional<JointLanes> lanes;
-    /// Velocities of at_rest(); allocated if there are jointed tips or noise.
+    /// Velocities of at_rest(); allocated if there are jointed tips, loops or noise.
     FieldOf<3> zero;
 
   private:

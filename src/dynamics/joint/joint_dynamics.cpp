@@ -54,7 +54,7 @@ double JointDynamics::correction() {
 }
 
 void JointDynamics::close_tips(int corrections) {
-    if (!group_.ends.has_tips()) return;
+    if (!group_.has_closures()) return;
     for (int i = 0; i < corrections; ++i) apply({JointOperator::project}, 0);
     apply({JointOperator::project_velocities}, 0);
 }
@@ -62,7 +62,7 @@ void JointDynamics::close_tips(int corrections) {
 double JointDynamics::closure_error() {
     solver_->check();
     double worst = largest({JointQuantity::trouble});
-    if (group_.ends.has_tips()) worst = larger(worst, largest({JointQuantity::opening}));
+    if (group_.has_closures()) worst = larger(worst, largest({JointQuantity::opening}));
     return communicator_.max(worst);
 }
 

@@ -58,7 +58,8 @@ enum class RatesOf : std::uint8_t { solution, saved };
 enum class JointQuantity : std::uint8_t {
     /// 0, or NaN if the state is not finite.
     trouble,
-    /// Opening of jointed tips relative to reach(), after computing the motion. Collective.
+    /// Opening of jointed tips and loops relative to reach(), after computing the motion.
+    /// Collective.
     opening,
     /// JointDynamics::stage_divergence().
     divergence,
@@ -159,12 +160,12 @@ class JointDynamics : public BeadHost {
     virtual void save_rates(JointRates const&) = 0;
     /// Default number of Newton steps that close tips.
     static constexpr int usual_corrections = 2;
-    /// Closes jointed tips again: `corrections` Newton steps for positions, then one for
+    /// Closes jointed tips and loops again: `corrections` Newton steps for positions, then one for
     /// velocities. Each correction is the smallest in the metric of the masses. Does nothing
-    /// without jointed tips. Collective.
+    /// without any. Collective.
     void close_tips(int corrections = usual_corrections);
-    /// Largest opening of a jointed tip over all ranks, relative to reach(); NaN if the state is
-    /// not finite. Collective.
+    /// Largest opening of a jointed tip or loop over all ranks, relative to reach(); NaN if the
+    /// state is not finite. Collective.
     double closure_error();
 
     // Results.

@@ -49,17 +49,26 @@ void complete_loads(JointBodies<Space>& bodies) {
         bodies.set_loads();
 }
 
+/// Adds the forces of loops to the results of a solution.
+template <class Space>
+AccelerationsView with_loops(JointBodies<Space>& bodies, AccelerationsView out) {
+    out.loop_force = bodies.closed_loops.force().data();
+    return out;
+}
+
 /// JointDynamics::solve().
 template <class Space>
 void solve(JointBodies<Space>& bodies, SolvedWith matrices) {
     if (matrices == SolvedWith::assembled) {
         complete_loads(bodies);
-        bodies.solver.solve(bodies.given_to_solver(), bodies.solution.next(false));
+        bodies.solver.solve(bodies.given_to_solver(),
+                            with_loops(bodies, bodies.solution.next(false)));
     } else {
         if (bodies.loads.carried) bodies.set_loads();
         find_rotations(bodies);
-        bodies.solver.assemble_and_solve(bodies.configuration(), bodies.given_to_solver(),
-                                         bodies.solution.next(bodies.loads.leaves_loads()));
+        bodies.solver.assemble_and_solve(
+            bodies.configuration(), bodies.given_to_solver(),
+            with_loops(bodies, bodies.solution.next(bodies.loads.leaves_loads())));
         bodies.solution.matrices = MatricesHeld::none;
     }
     bodies.exchange_ends();
@@ -83,9 +92,10 @@ void find_all(JointBodies<Space>& bodies) {
     if (assembled) leave_nothing(bodies);
     if (std::exchange(solution.found, Found::all) != Found::all) {
         find_rotations(bodies);
-        assembled ? bodies.solver.solve(bodies.given_to_solver(), solution.all())
+        AccelerationsView const all = with_loops(bodies, solution.all());
+        assembled ? bodies.solver.solve(bodies.given_to_solver(), all)
                   : bodies.solver.assemble_and_solve(bodies.configuration(),
-                                                     bodies.given_to_solver(), solution.all());
+                                                     bodies.given_to_solver(), all);
     }
     leave_nothing(bodies);
 }
@@ -130,6 +140,13 @@ void with_solution(JointBodies<Space>& bodies, Use const& use) {
                       tip_bias.view(),
                       tip_force.view(),
                       compliance.view()};
+    Field<3> pushed_torque, pushed_force;
+    if (bodies.closed_loops.any()) {
+        all.loops = &bodies.closed_loops;
+        pushed_torque = torque, pushed_force = force;
+        bodies.closed_loops.add_forces(pushed_torque, pushed_force);
+        all.torque = pushed_torque.view(), all.force = pushed_force.view();
+    }
     if (!solution.refinement) return use(all);
     auto const &turned = space.read(solution.refinement->alpha),
                &moved = space.read(solution.refinement->acceleration);
@@ -166,7 +183,14 @@ void add_response(JointBodies<Space>& bodies, JointDefect const& defect) {
     fill(space, r.force, defect.force);
     space.write(r.bias, defect.bias);
     space.write(r.tip_bias, defect.tip_bias);
-    bodies.solver.solve(r.loads(group), r.response(group));
+    std::vector<Vector<double, 6>> found(defect.loop_bias.size());
+    LoadsView lacking = r.loads(group);
+    lacking.loop_bias = defect.loop_bias.data();
+    AccelerationsView response = r.response(group);
+    response.loop_force = found.data();
+    bodies.solver.solve(lacking, response);
+    for (std::size_t l = 0; l < found.size(); ++l)
+        bodies.closed_loops.force()[l] = bodies.closed_loops.force()[l] + found[l];
     add_to(space, group.size, r.alpha.view(), solution.alpha.view());
     add_to(space, group.size, r.acceleration.view(), solution.acceleration.view());
     int const directions = group.directions;

@@ -22,8 +22,7 @@ class JointMotionIn {
     /// The group and the communicator must outlive this object.
     JointMotionIn(ChainGroup const& group, Space const& space, Communicator const& communicator,
                   BodyLoads const& given)
-        : needs_positions_(given.use_positions() || group.ends.has_tips() ||
-                           group.carried.in_scene),
+        : needs_positions_(given.use_positions() || group.has_closures() || group.carried.in_scene),
           needs_orientations_(given.use_orientations() || needs_positions_),
           kinematics_(group, space, communicator),
           fields_(group, space) {}

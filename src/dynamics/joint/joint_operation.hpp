@@ -40,10 +40,10 @@ enum class JointOperator : std::uint8_t {
     /// Stage of an embedded pair (JointOperation::stage). The start of the step is kept, so that it
     /// can be repeated.
     embedded_stage,
-    /// Newton step that closes jointed tips. The correction is the smallest in the metric of the
-    /// masses. Precondition: there are jointed tips.
+    /// Newton step that closes jointed tips and loops. The correction is the smallest in the metric
+    /// of the masses. Precondition: there are some.
     project,
-    /// Counterpart of `project` for the velocities of jointed tips.
+    /// Counterpart of `project` for the velocities of jointed tips and loops.
     project_velocities
 };
 

@@ -91,14 +91,19 @@ void thermalise(JointBodies<Space>& bodies, Thermostat const& thermostat, std::u
     bodies.motion.changed_state(false);
 }
 
-/// One Newton step that closes tips: the solver with openings instead of velocity terms.
+/// One Newton step that closes tips and loops: the solver with openings instead of velocity terms.
 template <class Space>
 void project(JointBodies<Space>& bodies, bool velocities) {
     move(bodies);
     assemble_matrices(bodies);
-    bodies.tips.set_opening(bodies.motion.view(), velocities);
-    bodies.solver.solve({{}, {}, {}, {}, bodies.tips.bias().view()},
-                        bodies.solution.accelerations());
+    LoadsView open;
+    if (bodies.group.ends.has_tips()) {
+        bodies.tips.set_opening(bodies.motion.view(), velocities);
+        open.tip_bias = bodies.tips.bias().view();
+    }
+    bodies.closed_loops.set_opening(velocities);
+    open.loop_bias = bodies.closed_loops.bias().data();
+    bodies.solver.solve(open, bodies.solution.accelerations());
     JointSteps const still = bodies.at_rest();
     bodies.exchange_ends(still.chains);
     bodies.space.for_each(bodies.group.size,
@@ -191,7 +196,9 @@ double largest(JointBodies<Space>& bodies, JointMeasure const& of) {
             return largest_trouble(bodies);
         case JointQuantity::opening:
             move(bodies);
-            return bodies.tips.error(bodies.motion.view());
+            return larger(
+                bodies.group.ends.has_tips() ? bodies.tips.error(bodies.motion.view()) : 0.0,
+                bodies.closed_loops.error());
         case JointQuantity::divergence:
             return largest_divergence(bodies, of.length);
         case JointQuantity::angular_speed:

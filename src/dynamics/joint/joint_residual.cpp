@@ -165,9 +165,9 @@ Vec3 JointSolution::yielded(std::int64_t k) const {
 /// |opening| divided by the sizes of its terms. It is one spatial equation: angles are multiplied
 /// by the body's `size`, so that the measure does not depend on the unit of length.
 double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> const& in,
-                              ConstDirectionsView biases, std::int64_t at, Screw<double> const& s,
-                              int restricted, double size, Vec3 const& yielded_by_it) const {
-    Vector<double, 6> b = load_first(biases, at, group.directions);
+                              Vector<double, 6> const& bias, Screw<double> const& s, int restricted,
+                              double size, Vec3 const& yielded_by_it) {
+    Vector<double, 6> b = bias;
     auto yields = Vector<double, 6>::zero();
     for (int i = 0; i < 3; ++i) yields[3 + i] = yielded_by_it[i];
     for (int i = restricted; i < 6; ++i) b[i] = 0.0;
@@ -187,6 +187,34 @@ Vector<double, 8> JointSolution::handle_before(std::int64_t k,
     return k == 0 ? before_first : handle(k - 1, r2(k - 1), axes2(k - 1));
 }
 
+std::pair<Vector<double, 8>, Vector<double, 8>> JointSolution::handles_of_loop(
+    std::size_t l) const {
+    auto const at = [&](std::int64_t body, LoopEnd const& end) {
+        return body == LoopClosure::ground ? Vector<double, 8>::zero()
+                                           : handle(body, end.arm, end.axes);
+    };
+    LoopEnds const& ends = loops->ends()[l];
+    return {at(group.loops[l].outboard, ends.outboard), at(group.loops[l].inboard, ends.inboard)};
+}
+
+double JointSolution::residual_of_loops() const {
+    double worst = 0;
+    for (std::size_t l = 0; loops && l < group.loops.size(); ++l) {
+        LocalLoop const& loop = group.loops[l];
+        LoopEnds const& ends = loops->ends()[l];
+        auto const size_at = [&](std::int64_t body, LoopEnd const& end) {
+            return body == LoopClosure::ground ? 0.0 : norm(end.arm) + radius_of(group, body);
+        };
+        auto const [outboard, inboard] = handles_of_loop(l);
+        worst = larger(worst, closing(outboard, inboard, loops->bias()[l],
+                                      dca::as_screw(loop.screw), loop.restricted,
+                                      std::max(size_at(loop.outboard, ends.outboard),
+                                               size_at(loop.inboard, ends.inboard)),
+                                      Vec3::zero()));
+    }
+    return worst;
+}
+
 double JointSolution::residual(Communicator const& communicator, Executor const& executor) const {
     Vector<double, 8> const before_first = handle_before_first(communicator);
     auto const at_tips = handles_at_tips(communicator);
@@ -202,13 +230,14 @@ double JointSolution::residual(Communicator const& communicator, Executor const&
                                       t.moment_sizes + weight * norm(group.bodies.r1[k])));
         double const size = norm(group.bodies.r1[k]) + radius_of(group, k);
         Vector<double, 8> const before = handle_before(k, before_first);
-        worst = larger(worst, closing(handle(k, group.bodies.r1[k], axes1(k)), before, bias, k,
-                                      screw(k), group.restricted(k), size, yielded(k)));
+        worst = larger(worst, closing(handle(k, group.bodies.r1[k], axes1(k)), before,
+                                      load_first(bias, k, group.directions), screw(k),
+                                      group.restricted(k), size, yielded(k)));
         if (!group.ends.has_jointed_tip(k)) return worst;
-        return larger(
-            worst, closing(at_tips[group.ends.tip_index(k)], handle(k, r2(k), axes2(k)), tip_bias,
-                           k, outboard_screw(k), group.ends.tip_of(k).restricted,
-                           norm(r2(k)) + radius_of(group, k), Vec3::zero()));
+        return larger(worst, closing(at_tips[group.ends.tip_index(k)], handle(k, r2(k), axes2(k)),
+                                     load_first(tip_bias, k, group.directions), outboard_screw(k),
+                                     group.ends.tip_of(k).restricted,
+                                     norm(r2(k)) + radius_of(group, k), Vec3::zero()));
     };
     double worst = 0;
     std::mutex one_at_a_time;
@@ -218,15 +247,23 @@ double JointSolution::residual(Communicator const& communicator, Executor const&
         std::lock_guard const lock(one_at_a_time);
         worst = larger(worst, of_range);
     });
-    return communicator.max(worst);
+    return communicator.max(larger(worst, residual_of_loops()));
 }
 
 JointDefect JointSolution::defect(Communicator const& communicator,
                                   Executor const& executor) const {
     std::int64_t const tips = group.ends.has_tips() ? group.size : 0;
-    JointDefect d{Field<3>(group.size), Field<3>(group.size),
+    JointDefect d{Field<3>(group.size),
+                  Field<3>(group.size),
                   DirectionsField(group.size + 1, group.directions),
-                  DirectionsField(tips, group.directions)};
+                  DirectionsField(tips, group.directions),
+                  {}};
+    for (std::size_t l = 0; loops && l < group.loops.size(); ++l) {
+        auto const [outboard, inboard] = handles_of_loop(l);
+        d.loop_bias.push_back(opening(outboard, inboard, loops->bias()[l],
+                                      dca::as_screw(group.loops[l].screw),
+                                      group.loops[l].restricted));
+    }
     Vector<double, 8> const before_first = handle_before_first(communicator);
     auto const at_tips = handles_at_tips(communicator);
     executor.for_each(group.size, [&](std::int64_t k) {

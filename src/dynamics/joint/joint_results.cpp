@@ -80,7 +80,26 @@ BodyResults JointSolution::results(Communicator const& communicator) const {
         r.tip_force.push_back({group.scene_chain(tip.body),
                                {{moment[0], moment[1], moment[2], push[0], push[1], push[2]}}});
     }
+    add_loop_forces(r);
     return r;
+}
+
+void JointSolution::add_loop_forces(BodyResults& r) const {
+    for (std::size_t l = 0; loops && l < group.loops.size(); ++l) {
+        LocalLoop const& loop = group.loops[l];
+        bool const grounded = loop.inboard == LoopClosure::ground;
+        LoopEnd const& end = loops->ends()[l].inboard;
+        Mat3 const to_ground = grounded ? Mat3::identity() : orientation(loop.inboard);
+        Vec3 const com = grounded ? Vec3::zero() : -group.bodies.r1[loop.inboard];
+        dca::AlongAxes<double> const along =
+            dca::along_axes(dca::as_screw(loop.screw), loops->force()[l]);
+        Vec3 const push = -(to_ground * (end.axes * along.linear));
+        // A joint that slides acts at the origin of G.
+        Vec3 const arm = to_ground * (end.arm + com - loop.joint.translation);
+        Vec3 const moment = cross(arm, push) - to_ground * (end.axes * along.angular);
+        r.loop_force.push_back({group.scene_chain(group.pieces[loop.piece].local),
+                                {{moment[0], moment[1], moment[2], push[0], push[1], push[2]}}});
+    }
 }
 
 /// Adds the force along the axis and the torque across it, in planar chains. With a jointed tip,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dynamics/absolute_dynamics.hpp"
+#include "dynamics/joint/closed_loops.hpp"
 #include "dynamics/joint/joint_chains.hpp"
 #include "tree/levels.hpp"
 
@@ -12,6 +13,7 @@ namespace catena {
 struct JointDefect {
     Field<3> torque, force;
     DirectionsField bias, tip_bias;
+    std::vector<Vector<double, 6>> loop_bias;  // By loop.
 };
 
 /// Motion, loads and solution of a rank's bodies, with results and residuals computed from them. B
@@ -26,7 +28,8 @@ struct JointSolution {
     /// Fields of MotionView.
     ConstView<3> omega, velocity, moving_r2;
     ConstView<6> moving_axes2;
-    /// Fields of JointChains. `force` has no origin if no body has a force.
+    /// Fields of JointChains, with the forces of loops. `force` has no origin if no body has a
+    /// force.
     ConstView<3> torque, force, alpha, acceleration;
     /// Forces on carried beads, W.
     ConstView<3> bead_force;
@@ -36,6 +39,8 @@ struct JointSolution {
     struct Change {
         ConstView<3> alpha{}, acceleration{};
     } change = {};
+    /// Loops of the chains; null without any.
+    ClosedLoops const* loops = nullptr;
 
     /// Accelerations and joint forces for output, W. Collective.
     BodyResults results(Communicator const&) const;
@@ -49,6 +54,8 @@ struct JointSolution {
   private:
     /// Adds the constraint forces across the plane of planar chains. Collective.
     void add_across_plane(Communicator const&, BodyResults&) const;
+    /// Adds the forces of loops.
+    void add_loop_forces(BodyResults&) const;
     Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(rotation.load(k))); }
     /// Axes of the outboard joint, B. In branched chains, entry k is of the inboard body of body k
     /// at the joint between them; likewise r2().
@@ -113,9 +120,13 @@ struct JointSolution {
                                      Vector<double, 6> const& bias, Screw<double> const&,
                                      int restricted);
     /// Relative residual of a joint's closing.
-    double closing(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard,
-                   ConstDirectionsView biases, std::int64_t at, Screw<double> const&,
-                   int restricted, double size, Vec3 const& yielded) const;
+    static double closing(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard,
+                          Vector<double, 6> const& bias, Screw<double> const&, int restricted,
+                          double size, Vec3 const& yielded);
+    /// Values of handle() on the outboard and the inboard side of a loop's joint.
+    std::pair<Vector<double, 8>, Vector<double, 8>> handles_of_loop(std::size_t loop) const;
+    /// Largest residual of a loop's closing.
+    double residual_of_loops() const;
 };
 
 /// Potential energy of bodies at `motion`, which must include positions.

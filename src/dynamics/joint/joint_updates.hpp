@@ -21,6 +21,20 @@ bool follows_revolutes(JointBodies<Space> const& bodies) {
            !bodies.loads.implicit && (bodies.lanes || !bodies.solver.has_runs_side_by_side());
 }
 
+/// Sets the ends of tips and loops, and their velocity terms.
+template <class Space>
+void set_closures(JointBodies<Space>& bodies) {
+    MotionView const motion = bodies.motion.view();
+    Vec3 const& gravity = bodies.loads.given.gravity;
+    if (bodies.group.ends.has_tips()) {
+        bodies.tips.set_ends(motion);
+        bodies.tips.set_acceleration_bias(motion, gravity);
+    }
+    if (bodies.closed_loops.any()) {
+        bodies.closed_loops.set_ends(motion);
+        bodies.closed_loops.set_acceleration_bias(gravity);
+    }
+}
 /// Computes motion and loads of all bodies. `again`: keeps the forces on carried beads.
 template <bool positions, class Space>
 void update_all(JointBodies<Space>& bodies, bool again) {
@@ -51,9 +65,7 @@ void update_all(JointBodies<Space>& bodies, bool again) {
     } else {
         kinematics.template sweep<positions>(c.moved.scan, shown, set_motion);
     }
-    if (!group.ends.has_tips()) return;
-    bodies.tips.set_ends(bodies.motion.view());
-    bodies.tips.set_acceleration_bias(bodies.motion.view(), bodies.loads.given.gravity);
+    if (group.has_closures()) set_closures(bodies);
 }
 template <class Space>
 void update_all(JointBodies<Space>& bodies, bool again) {
@@ -110,6 +122,7 @@ template <class Space>
 void move(JointBodies<Space>& bodies) {
     bodies.motion.move(bodies.state.now.view());
     if (bodies.group.ends.has_tips()) bodies.tips.set_ends(bodies.motion.view());
+    if (bodies.closed_loops.any()) bodies.closed_loops.set_ends(bodies.motion.view());
 }
 
 }  // namespace catena::joint_coordinates

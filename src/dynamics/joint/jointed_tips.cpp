@@ -8,9 +8,6 @@
 
 namespace catena {
 
-namespace {
-
-/// Properties of a tip that do not depend on which of its bodies are on this rank.
 JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vector<double, 4> const& screw,
                   int restricted) {
     JointedTip tip;
@@ -27,6 +24,8 @@ JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vector<double, 4> con
     tip.cosine = dot(joint.first_axis, joint.axis);
     return tip;
 }
+
+namespace {
 
 /// Motion of G in the ground, as the scene's start fixes it.
 Motion ground_of(TipJoint const& joint, Quat const& orientation, Vec3 const& origin) {
@@ -75,6 +74,8 @@ double reach_of(ChainGroup const& group, Scene const& scene) {
         ChainSpec const& spec = scene.chains[chain.in_scene];
         BodyArrays const& b = spec.bodies;
         double length = spec.tip == Tip::jointed ? norm(spec.tip_joint.translation) : 0.0, size = 0;
+        for (LoopClosure const& loop : spec.loops)
+            length = std::max({length, norm(loop.joint.translation), norm(loop.end_translation)});
         for (std::size_t k = 0; k < b.size(); ++k) {
             if (k > 0) length += norm(b.translation[k]);
             size = std::max(size, norm(b.com[k]) + radius_of_gyration(b.inertia[k], b.mass[k]));

@@ -38,6 +38,9 @@ struct JointedTip {
     /// Cosine of the angle between the axes of a universal joint.
     double cosine = 0;
 };
+/// Returns the properties of a tip that do not depend on its bodies.
+JointedTip tip_of(TipJoint const& joint, Mat3 const& axes, Vector<double, 4> const& screw,
+                  int restricted);
 /// Jointed tips of this rank's bodies: those of last bodies, in the order of LocalEnds::tips, then
 /// those of rings that only begin here. `start` is the motion at the scene's start, positions
 /// included, which fixes the frames G on the ground.
@@ -118,7 +121,7 @@ struct JointedTips {
     }
 
     /// Meeting point and axes of the joint in the last body, at the current motion.
-    CATENA_HD Place place(JointedTip const& t, Ends const& e) const {
+    CATENA_HD static Place place(JointedTip const& t, Ends const& e) {
         Place m{t.translation - t.com, t.rotation * t.axes};
         if (slides(t.type)) m.point = e.apart() - t.com;
         if (turns_twice(t.type)) {
@@ -146,14 +149,14 @@ struct JointedTips {
     }
 
     /// Velocity of G relative to the meeting point of the last body, along the axes of the Place.
-    CATENA_HD Pair opening_rate(JointedTip const& t, Ends const& e, Place const& m) const {
+    CATENA_HD static Pair opening_rate(JointedTip const& t, Ends const& e, Place const& m) {
         Vec3 const w = e.last.omega, v = e.last.velocity + cross(w, t.com + m.point);
         return {transposed_times(m.axes, e.to_last(e.other.omega) - w),
                 transposed_times(m.axes, e.to_last(e.other.velocity) - v)};
     }
     /// Velocity-dependent part c of the joint's relative acceleration (src/dca/README.md, "Joint
     /// bias"), with the rates that follow from the bodies' motion.
-    CATENA_HD Pair velocity_terms(JointedTip const& t, Ends const& e, Place const& m) const {
+    CATENA_HD static Pair velocity_terms(JointedTip const& t, Ends const& e, Place const& m) {
         Vec3 const w = transposed_times(m.axes, e.last.omega);
         if (!turns_twice(t.type) && !keeps_axis(t.type)) return {Vec3::zero(), Vec3::zero()};
         Pair const rate = opening_rate(t, e, m);
@@ -176,7 +179,7 @@ struct JointedTips {
     }
     /// Displacement of G relative to J, along the axes of the Place: the joint's closing error
     /// along its restricted directions.
-    CATENA_HD Pair opening(JointedTip const& t, Ends const& e, Place const& m) const {
+    CATENA_HD static Pair opening(JointedTip const& t, Ends const& e, Place const& m) {
         double constexpr turn = 6.283185307179586476925;
         Pair open{Vec3::zero(), transposed_times(m.axes, e.apart() - t.translation)};
         // Rotation of G in J.
@@ -239,7 +242,11 @@ struct JointedTips {
         JointedTip const& t = tip[i];
         if (t.body < 0) return 0;
         Ends const e = ends(i);
-        Vector<double, 6> const open = along_directions(t, opening(t, e, place(t, e)));
+        return largest_opening(t, e, place(t, e), reach);
+    }
+    CATENA_HD static double largest_opening(JointedTip const& t, Ends const& e, Place const& m,
+                                            double reach) {
+        Vector<double, 6> const open = along_directions(t, opening(t, e, m));
         double worst = 0;
         for (int j = 0; j < t.restricted; ++j) {
             bool const linear = direction_at(static_cast<int>(t.screw.order), j) < 3;

@@ -63,6 +63,16 @@ class Solution:
         return self._found.tip_torques
 
     @property
+    def loop_forces(self) -> np.ndarray:
+        """Constraint forces of loops on the first of their two bodies, ground axes (n_loops, 3)."""
+        return self._found.loop_forces
+
+    @property
+    def loop_torques(self) -> np.ndarray:
+        """Constraint torques of loops on the first of their two bodies, ground axes (n_loops, 3)."""
+        return self._found.loop_torques
+
+    @property
     def residual(self) -> float:
         """Largest local residual of the equations of motion; at most ``residual_bound`` in a valid solution."""
         return self._found.residual
