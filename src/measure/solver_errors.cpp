@@ -86,10 +86,14 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
     Reference reference;
     bool const takes_articulated =
         std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles);
+    bool const only_trees =
+        std::all_of(scene.chains.begin(), scene.chains.end(), scene::is_body_tree);
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
             if (kind == Handles::articulated && !takes_articulated) continue;
-            if (!study.points.empty() && kind != Handles::projected && scene::has_paths(scene))
+            if (only_trees ? kind != Handles::articulated
+                           : !study.points.empty() && kind != Handles::projected &&
+                                 scene::has_paths(scene))
                 continue;
             Scene variant = scene;
             variant.solver.backend = backend;
