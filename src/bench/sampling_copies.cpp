@@ -26,7 +26,8 @@ constexpr double clear_of_chance = 4;
 Scene copies_of(BenchRequest const& request) {
     std::vector<std::string> overrides = overrides_of(request);
     overrides.push_back(fmt::format("chains[0].count={}", request.sampling.copies));
-    for (char const* const of_a_box : {"box=none", "place=null"}) overrides.emplace_back(of_a_box);
+    for (char const* const of_a_box : {"box=none", "place=null", "chains[0].place=null"})
+        overrides.emplace_back(of_a_box);
     std::string const& file = request.sampling.scene;
     Scene scene = file.empty() ? single_chain_scene(overrides) : load_scene(file, overrides);
     if (std::ssize(scene.chains) != request.sampling.copies)

@@ -89,48 +89,68 @@ struct Needed {
     }
 };
 
-/// Throws InputError for bodies other than beads that have the key `parent`.
+/// Throws InputError for rigid bodies on links that have the key `parent`.
 void refuse_parents(Node const& bodies) {
     for (Node const& body : bodies.items)
         if (Node const* const parent = body.find("parent"))
-            fail(*parent, "a branched chain that has rigid bodies or joints other than links",
-                 "leave `parent` out: branched chains consist of point beads on links");
+            fail(*parent, "a branched chain that has rigid bodies on links",
+                 "leave `parent` out, make it of point beads on links, or give every joint another "
+                 "type");
 }
 
-/// Reads the number of the bead on which bead k (from 0) of `beads` hangs, of any sign and size.
-std::int64_t read_number(Node const& node, std::int64_t k, std::int64_t beads) {
+/// Words for the members of a chain in messages.
+struct Words {
+    char const *one, *several;
+};
+constexpr Words of_beads{"bead", "beads"}, of_bodies{"body", "bodies"};
+
+/// Reads the number of the member on which member k (from 0) of `count` hangs, of any sign and
+/// size.
+std::int64_t read_number(Node const& node, std::int64_t k, std::int64_t count, Words const& are) {
     double value = 0;
     if (node.kind == Node::Kind::scalar && !node.quoted &&
         parse_number(node.text, value) == NumberFault::none && value > 0x1p53)
-        fail(node, fmt::format("bead {} hangs on bead {} of {}", k + 1, node.text, beads),
-             "count the beads of this chain from 1");
+        fail(node, fmt::format("{0} {1} hangs on {0} {2} of {3}", are.one, k + 1, node.text, count),
+             fmt::format("count the {} of this chain from 1", are.several));
     return whole(node, std::numeric_limits<std::int64_t>::min());
 }
 
-/// Reads the bead on which bead k (from 0) of `beads` hangs; -1 for bead 1.
-std::int64_t read_parent(Fields const& bead, std::int64_t k, std::int64_t beads) {
-    Node const* const node = bead.find("parent");
-    if (!node) return k - 1;
-    std::int64_t const parent = read_number(*node, k, beads);
-    if (k == 0 && parent != 0)
-        fail(*node,
-             fmt::format("bead 1 hangs on bead {}, but the first bead hangs on none", parent),
-             "leave `parent` out here, and begin the list with the bead that hangs on none");
+/// Throws InputError unless `parent` is the number of a member before member k (from 0) of `count`.
+void check_parent(Node const& node, std::int64_t parent, std::int64_t k, std::int64_t count,
+                  Words const& are) {
+    std::string const hangs = fmt::format("{} {} hangs on ", are.one, k + 1),
+                      earlier = fmt::format("the number of an earlier {}", are.one);
     if (k > 0 && parent == 0)
-        fail(*node, fmt::format("bead {} hangs on none, as bead 1 does: two trees", k + 1),
-             "give it the number of an earlier bead, or write a chain of its own");
+        fail(node, fmt::format("{}none, as {} 1 does: two trees", hangs, are.one),
+             fmt::format("give it {}, or write a chain of its own", earlier));
     if (parent < 0)
-        fail(*node, fmt::format("bead {} hangs on bead {}", k + 1, parent),
-             k == 1 ? "give 1" : fmt::format("give the number of an earlier bead, 1 to {}", k));
+        fail(node, fmt::format("{}{} {}", hangs, are.one, parent),
+             k == 1 ? "give 1" : fmt::format("give {}, 1 to {}", earlier, k));
     if (parent == k + 1)
-        fail(*node, fmt::format("bead {} hangs on itself", parent),
-             "give it the number of an earlier bead");
-    if (parent > beads)
-        fail(*node, fmt::format("bead {} hangs on bead {} of {}", k + 1, parent, beads),
-             "count the beads of this chain from 1");
+        fail(node, fmt::format("{} {} hangs on itself", are.one, parent),
+             fmt::format("give it {}", earlier));
+    if (parent > count)
+        fail(node, fmt::format("{}{} {} of {}", hangs, are.one, parent, count),
+             fmt::format("count the {} of this chain from 1", are.several));
     if (parent > k)
-        fail(*node, fmt::format("bead {} hangs on bead {}, which follows it", k + 1, parent),
-             "list each bead after the one it hangs on");
+        fail(node, fmt::format("{}{} {}, which follows it", hangs, are.one, parent),
+             fmt::format("list each {} after the one it hangs on", are.one));
+}
+
+/// Reads the member on which member k (from 0) of `count` hangs; -1 for the first one.
+std::int64_t read_parent(Fields const& member, std::int64_t k, std::int64_t count,
+                         Words const& are) {
+    Node const* const node = member.find("parent");
+    if (!node) return k - 1;
+    std::int64_t const parent = read_number(*node, k, count, are);
+    if (k == 0 && parent != 0)
+        fail(
+            *node,
+            fmt::format("{0} 1 hangs on {0} {1}, but the first {0} hangs on none", are.one, parent),
+            fmt::format("leave `parent` out here, and begin the list with the {} that hangs on "
+                        "none",
+                        are.one));
+    check_parent(*node, parent, k, count, are);
     return parent - 1;
 }
 
@@ -166,7 +186,7 @@ BodyList kind_of_list(Node const& bodies) {
     // A single point without links, such as an ion, is a chain of one bead.
     bool const lone_bead =
         bodies.items.size() == 1 && !rigid && !first.find("joint") && first.find("position");
-    if (rigid || !(links || lone_bead)) refuse_parents(bodies);
+    if (rigid && links) refuse_parents(bodies);
     if (!links) return lone_bead ? BodyList::beads : BodyList::bodies;
     return rigid ? BodyList::linked : BodyList::beads;
 }
@@ -177,8 +197,11 @@ ExplicitBodies read_bodies(Node const& node, Base base) {
     BodyArrays& bodies = made.bodies;
     Needed needed;
     CarriedList carried;
+    std::vector<std::int64_t> inboard;
     for (std::size_t k = 0; k < node.items.size(); ++k) {
         Fields const body(node.items[k], keys::body);
+        inboard.push_back(read_parent(body, static_cast<std::int64_t>(k),
+                                      static_cast<std::int64_t>(node.items.size()), of_bodies));
         bodies.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         Node const* const com = body.find("com");
         bodies.com.push_back(com ? vector3(*com) : Vec3::zero());
@@ -192,6 +215,7 @@ ExplicitBodies read_bodies(Node const& node, Base base) {
     }
     needed.drop_rest(bodies);
     bodies.carried = carried.take();
+    made.parent = as_parents(std::move(inboard));
     return made;
 }
 
@@ -206,7 +230,7 @@ ExplicitBeads read_beads(Node const& node, Base base) {
                      "leave it out or change `joint`");
         Fields const body(item, keys::bead);
         inboard.push_back(read_parent(body, static_cast<std::int64_t>(k),
-                                      static_cast<std::int64_t>(node.items.size())));
+                                      static_cast<std::int64_t>(node.items.size()), of_beads));
         made.beads.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         made.beads.position.push_back(vector3(body.need("position", "position: [0, 0, 0]")));
         Node const* const velocity = body.find("velocity");

@@ -11,19 +11,22 @@ namespace catena::scene {
 enum class BodyList { bodies, beads, linked };
 
 /// Determines the content of the list. Throws InputError for an empty list, for a mixture of links
-/// with other joints, and for a `parent` among rigid bodies.
+/// with other joints, and for a `parent` among rigid bodies on links.
 BodyList kind_of_list(Node const& bodies);
 
 /// Rigid bodies read from a list.
 struct ExplicitBodies {
     /// Arrays of the chain; optional arrays that no body needs are empty.
     BodyArrays bodies;
+    /// Bodies on which the bodies hang, as ChainSpec::parent.
+    std::vector<std::int64_t> parent = {};
     /// First joint that is written `planar`, or nullptr. The caller checks that all axes of such a
     /// chain are parallel.
     Node const* planar = nullptr;
 };
 /// Reads rigid bodies on any joints but links and checks every number. Loads of bodies are read
-/// afterwards (terms::read_bodies()). Throws InputError that names the body.
+/// afterwards (terms::read_bodies()). Throws InputError that names the body, also for a `parent`
+/// that is not an earlier body.
 ExplicitBodies read_bodies(Node const& bodies, Base base);
 
 /// Point beads read from a list.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "bodies/body_datasets.hpp"
@@ -14,6 +15,7 @@
 #include "io/trial.hpp"
 #include "joints/joint_models.hpp"
 #include "keys/maps.hpp"
+#include "scene/branches.hpp"
 #include "scene/fields.hpp"
 #include "terms/force_terms.hpp"
 
@@ -57,6 +59,7 @@ class Hdf5Bodies {
     ChainSpec read() {
         refuse_unknown();
         read_masses();
+        read_parents();
         read_joints();
         read_frames();
         read_axes();
@@ -96,6 +99,23 @@ class Hdf5Bodies {
                                    : Mat3{{v[0], v[1], v[3], v[1], v[2], v[4], v[3], v[4], v[5]}};
                 datasets_.refuse("inertia", k, make_inertia(m, bodies_.inertia[k]));
             });
+    }
+
+    /// Reads `parent` [n]: the number of the body on which each body hangs, from 1; 0 for body 1.
+    void read_parents() {
+        if (!table_.has("parent")) return;
+        std::vector<std::int64_t> inboard(table_.rows());
+        table_.for_each("parent", {{}}, [&](std::size_t k, double const* v, std::size_t) {
+            auto const before = static_cast<double>(k);
+            bool const fits = k == 0 ? v[0] == 0 : v[0] >= 1 && v[0] <= before;
+            if (!fits || v[0] != std::floor(v[0]))
+                table_.refuse("parent", k, fmt::format("body {} hangs on body {:g}", k + 1, v[0]),
+                              k == 0
+                                  ? "give 0: body 1 hangs on none"
+                                  : fmt::format("give the number of an earlier body, 1 to {}", k));
+            inboard[k] = static_cast<std::int64_t>(v[0]) - 1;
+        });
+        chain_.parent = as_parents(std::move(inboard));
     }
 
     /// Reads `joint_type` [n]: names, or the codes of the joint models.

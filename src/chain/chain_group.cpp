@@ -131,16 +131,18 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     group.joints.rotation.set(k, {{rotation.w, rotation.x, rotation.y, rotation.z}});
     group.joints.translation.set(k, b.translation[body]);
     // The last body with a free tip is treated as the one before, so that alike bodies have alike
-    // entries.
-    std::int64_t const inboard = body + 1 < static_cast<std::int64_t>(b.size()) ? body : body - 1;
-    group.bodies.r2.set(k,
-                        inboard < 0 ? Vec3::zero() : b.translation[inboard + 1] - b.com[inboard]);
+    // entries. In branched chains the entries of a body are those of the inboard body at its joint.
+    std::int64_t const outboard =
+        spec.is_branched() || body + 1 == static_cast<std::int64_t>(b.size()) ? body : body + 1;
+    std::int64_t const inboard =
+        spec.is_branched() ? spec.parent[static_cast<std::size_t>(body)] : outboard - 1;
+    group.bodies.r2.set(k, inboard < 0 ? Vec3::zero() : b.translation[outboard] - b.com[inboard]);
     // The axes are computed as in JointsView::meeting(), so that axes that do not move have the
     // same bits there.
     auto const meeting = [&](std::int64_t joint) {
         return to_matrix(to_quaternion(b.rotation[joint])) * axes_of(kept_axes(axes(joint)));
     };
-    group.bodies.axes2.set(k, kept_axes(inboard < 0 ? Mat3::identity() : meeting(inboard + 1)));
+    group.bodies.axes2.set(k, kept_axes(inboard < 0 ? Mat3::identity() : meeting(outboard)));
     if (group.joints.has_universal && turns_twice(b.joint[body]))
         group.joints.first_axis.set(k, b.first_axis[body]);
     if (!group.joints.has_screws) return;
@@ -461,20 +463,18 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     return group;
 }
 
-/// Least number of a group of chains with loops.
-int constexpr first_group_of_loops = 10;
-/// Returns a number that is equal for chains of one group.
-int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
-    if (spec.has_loops())
-        return first_group_of_loops + (carries_all(handles) || (implicit && scene::resists(spec))
-                                           ? 6
-                                           : smallest_directions(spec));
+/// Returns a number below 10 that is equal for chains of one group, apart from their loops.
+int group_of_bodies(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
     if (spec.is_cross_linked()) return 8;
-    if (scene::branches(spec)) return 7;
+    if (scene::branches(spec)) return spec.is_beads() ? 7 : 9;
     if (spec.is_beads()) return 0;
     if (spec.is_linked()) return 1;
     if (carries_all(handles) || (implicit && scene::resists(spec))) return 6;
     return axes == Axes::world ? 3 : smallest_directions(spec);
+}
+/// Returns a number that is equal for chains of one group.
+int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
+    return group_of_bodies(spec, axes, handles, implicit) + (spec.has_loops() ? 10 : 0);
 }
 
 }  // namespace
@@ -514,12 +514,16 @@ std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes ax
         if (together && (any.is_beads() || any.is_linked()))
             members =
                 compact_order(placed_chains(scene, members), communicator.size(), options.shares);
+        bool const of_tree = !any.is_beads() && scene::branches(any);
         bool const of_resisting =
             options.implicit && std::any_of(members.begin(), members.end(),
                                             [&](int c) { return scene::resists(scene.chains[c]); });
         groups.push_back(std::make_unique<ChainGroup>(
-            make_group(scene, members, axes, of_resisting ? Handles::full : handles, pairwise,
-                       communicator, {of_resisting, options.shares, options.executor})));
+            make_group(scene, members, axes,
+                       of_tree        ? Handles::articulated
+                       : of_resisting ? Handles::full
+                                      : handles,
+                       pairwise, communicator, {of_resisting, options.shares, options.executor})));
     }
     return groups;
 }

@@ -15,6 +15,7 @@
 #include "plan/predictions.hpp"
 #include "plan/savings.hpp"
 #include "scene/branch_limits.hpp"
+#include "scene/branches.hpp"
 #include "scene/loops.hpp"
 #include "terms/force_terms.hpp"
 
@@ -65,26 +66,37 @@ dca::ChainTree const& longest_tree(ChainGroup const& group) {
                              [](auto const& a, auto const& b) { return a.bodies < b.bodies; });
 }
 
-/// Counts of the tree of a group's longest chain, or of the paths of branched chains.
+/// Counts of the tree of a group's longest chain, of the paths of branched chains, or of the levels
+/// of branched chains of rigid bodies.
 struct TreeCounts {
     std::int64_t runs = 0, levels = 0, depth = 0;
 };
-TreeCounts counts_of(ChainGroup const& group) {
+TreeCounts counts_of(ChainGroup const& group, Scene const& scene, SolverReport const& report) {
     dca::ChainTree const& tree = longest_tree(group);
     if (!group.is_branched()) return {tree.runs, tree.levels(), tree.depth()};
+    if (!group.beads) {
+        TreeCounts counts{group.partition.bodies(), 0, report.depth};
+        for (GroupChain const& chain : group.chains)
+            counts.levels = std::max(
+                counts.levels,
+                1 + scene::height_of(scene.chains[static_cast<std::size_t>(chain.in_scene)]));
+        return counts;
+    }
     dca::BranchCounts const& branched = group.branching.paths.of_all_ranks;
     return {branched.runs, branched.levels, branched.depth};
 }
 
 /// Describes the tree of a group's longest chain, or the paths of branched chains.
-std::string tree_text(ChainGroup const& group) {
+std::string tree_text(ChainGroup const& group, TreeCounts const& counts) {
     dca::ChainTree const& tree = longest_tree(group);
-    TreeCounts const counts = counts_of(group);
+    if (group.is_branched() && !group.beads)
+        return fmt::format("{} bodies, swept by {}; depth {}", group.partition.bodies(),
+                           counted(counts.levels, "level", "levels"), counts.depth);
     std::string const bodies =
         group.is_branched()
             ? fmt::format(
-                  "{} bodies in {} and {}: {} of up to {} bodies, then at most {} of "
-                  "merges on a path",
+                  "{} bodies in {} and {}: {} of up to {} bodies, at most {} of "
+                  "merges in a phase",
                   group.partition.bodies(),
                   counted(group.branching.paths.of_all_ranks.paths, "path", "paths"),
                   counted(group.branching.paths.of_all_ranks.phases, "phase", "phases"),
@@ -165,8 +177,8 @@ void add_group(Text& text, Json& list, ChainGroup const& group, Scene const& sce
                              counted(group.partition.chains(), word + "chain", word + "chains"),
                              group.beads ? "beads on links" : "bodies", group.kind()));
     text.entry("blocks", block_text(group.beads, group.directions, group.handles));
-    TreeCounts const counts = counts_of(group);
-    text.entry("tree", tree_text(group));
+    TreeCounts const counts = counts_of(group, scene, report);
+    text.entry("tree", tree_text(group, counts));
     if (crosslinks.all > 0) text.entry("cross-links", crosslinks_text(crosslinks));
     LoopCounts const loops = loops_of(group, scene);
     if (loops.all > 0) text.entry("loops", loops_text(loops));

@@ -124,7 +124,7 @@ struct BeadChainsIn {
         if (tip[i].body >= 0) tip_direction.store(tip[i].body, u);
         if (tip[i].first >= 0) direction.store(tip[i].first, u);
     }
-    /// Sums gravity and OpenMM's forces into the force array.
+    /// Sums gravity, constant forces and OpenMM's forces into the force array.
     CATENA_HD_IN_PLACE void take_forces(std::int64_t k, BeadForces const& forces) const {
         force.store(k, forces.on(k, mass.at(k, 0)));
     }

@@ -126,17 +126,6 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
     return communicator.max(worst);
 }
 
-namespace {
-
-/// Adds the constant forces on beads, if there are any.
-template <class Dynamics>
-std::unique_ptr<Dynamics> with_constants(std::unique_ptr<Dynamics> beads) {
-    if (beads->given().wrenches) beads->use(std::make_unique<ConstantOnBeads>(beads->given()));
-    return beads;
-}
-
-}  // namespace
-
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene,
                                                      Executor const& executor,
                                                      Communicator const& communicator,
@@ -150,14 +139,14 @@ std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Sc
             beads->use(std::make_unique<CrossLinkFixman>(group, scene, executor, *crosslinked));
         else if (scene.dynamics.fixman)
             beads->use(std::make_unique<BranchedFixman>(group, scene, executor));
-        return with_constants(std::move(beads));
+        return beads;
     }
     auto beads = std::make_unique<BeadDynamics<HostSpace>>(group, scene, space, communicator,
                                                            std::move(solver));
     if (scene.dynamics.fixman)
         beads->use(
             std::make_unique<LinkFixman>(group, scene, executor, communicator, beads->solver()));
-    return with_constants(std::move(beads));
+    return beads;
 }
 
 }  // namespace catena

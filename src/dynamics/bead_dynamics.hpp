@@ -53,7 +53,6 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     void set_simple_forces() override { forces_.set_simple(); }
     /// Adds a term to the forces. Host only.
     void use(std::unique_ptr<BeadTerm> term) { forces_.terms.push_back(std::move(term)); }
-    BodyLoads const& given() const { return forces_.given; }
     View<3> bead_forces() override { return forces_.show(); }
     ConstView<3> bead_positions() override {
         return beads_.space.pull(beads_.store.position, position_mirror_);

@@ -19,6 +19,8 @@ template <class Space, class Fields>
 struct BeadForceArray {
     BeadsIn<Space, Fields>& beads;
     BodyLoads given;
+    /// Constant forces of all terms in the memory of the Space; absent if no bead has one.
+    std::optional<typename Space::template Fixed<3>> constant;
     /// Terms that act on single beads; only the host has any.
     std::vector<std::unique_ptr<BeadTerm>> terms;
     /// Forces that are not yet in the array.
@@ -29,11 +31,14 @@ struct BeadForceArray {
 
     /// The beads must outlive this object.
     BeadForceArray(BeadsIn<Space, Fields>& of, Scene const& scene)
-        : beads(of), given(make_body_loads(of.group, scene)) {}
+        : beads(of), given(make_body_loads(of.group, scene)) {
+        if (given.wrenches) constant.emplace(given.wrench_force);
+    }
 
-    /// Sets the forces of gravity and of the terms at the last updated configuration. Collective.
+    /// Sets gravity, the constant forces and those of the terms at the last updated configuration.
+    /// Collective.
     void set_simple() {
-        pending = BeadForces{given.gravity, {}};
+        pending = BeadForces{given.gravity, constant ? constant->view() : ConstView<3>{}, {}};
         if (terms.empty()) return;
         settle();
         for (auto const& term : terms)

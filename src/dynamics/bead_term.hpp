@@ -18,18 +18,4 @@ class BeadTerm {
     virtual void set_energy(PotentialEnergy&) const {}
 };
 
-/// The constant forces of all terms (terms::constant_wrench()).
-class ConstantOnBeads final : public BeadTerm {
-  public:
-    /// `loads` must outlive this object.
-    explicit ConstantOnBeads(BodyLoads const& loads) : loads_(loads) {}
-    void add_forces(ConfigurationView const&, View<3> force) override {
-        for (std::int64_t k = 0; k < force.size; ++k)
-            force.store(k, force.load(k) + loads_.wrench_force[k]);
-    }
-
-  private:
-    BodyLoads const& loads_;
-};
-
 }  // namespace catena

@@ -73,6 +73,7 @@ class JointKinematics {
     JointKinematics(ChainGroup const& group, Space const& space, Communicator const& communicator)
         : group_(group),
           space_(space),
+          alone_(alone(space)),
           communicator_(communicator),
           joints_(group, space),
           arrays_(group),
@@ -101,9 +102,13 @@ class JointKinematics {
     /// a chain.
     template <bool positions, class Last>
     void sweep(JointScan const& s, LoadsForNeighbour const& loads, Last const& last) {
+        if (goes_by_levels()) return by_levels(last);
         sweep<positions>(s, loads);
         space_.for_each(group_.size, last);
     }
+    /// True if the chains are branched. Their bodies are then visited level by level, each after
+    /// its inboard body.
+    bool goes_by_levels() const { return joints_.levels().levels() > 0; }
     /// Overload without an action per body.
     template <bool positions>
     void sweep(JointScan const& s, LoadsForNeighbour const& loads) {
@@ -134,6 +139,17 @@ class JointKinematics {
     }
 
     // Members below are public because nvcc accepts device lambdas in public members only.
+    /// Calls last(k) for the bodies of each level, level after level.
+    template <class Last>
+    void by_levels(Last const& last) {
+        std::vector<std::int64_t> const& first = joints_.levels().first_of_level;
+        for (std::size_t level = 0; level + 1 < first.size(); ++level) {
+            std::int64_t const* const body = joints_.body_of_level().data() + first[level];
+            std::int64_t const count = first[level + 1] - first[level];
+            Space const& space = count < dca::level_worth_threads ? alone_ : space_;
+            space.for_each(count, [body, last] CATENA_LAMBDA(std::int64_t i) { last(body[i]); });
+        }
+    }
     template <bool positions>
     void evaluate(JointScan const& s) {
         space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) {
@@ -165,6 +181,13 @@ class JointKinematics {
     }
 
   private:
+    /// Returns a space without threads, where that is another one.
+    static Space alone(Space const& space) {
+        if constexpr (std::is_same_v<Space, HostSpace>)
+            return HostSpace(this_thread());
+        else
+            return space;
+    }
     /// Motions of this rank's units, as the frontier exchange between ranks reads and writes them.
     template <class Scan>
     dca::RecordNumbers<Motion> shown(Scan const& scan) {
@@ -187,7 +210,7 @@ class JointKinematics {
     }
 
     ChainGroup const& group_;
-    Space space_;
+    Space space_, alone_;
     Communicator const& communicator_;
     JointsIn<Space> joints_;
     ScanArrays<Space> arrays_;

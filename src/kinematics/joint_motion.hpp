@@ -88,7 +88,8 @@ struct MotionView {
     View<3> origin;    // Origin of B, W.
     View<3> velocity;  // Velocity of the origin of B, B axes.
     // Handle 2 of bodies (ConfigurationView::r2, axes2), B axes. Present only in groups whose
-    // meeting frames move in the inboard body.
+    // meeting frames move in the inboard body. In branched chains, entry k is the handle of the
+    // inboard body of body k at the joint between them.
     View<3> r2;
     View<6> axes2;
     bool orients_first_alone = false;
@@ -121,6 +122,9 @@ struct JointsView {
     std::int64_t pieces = 0;
     LocalDrive const* drive = nullptr;
     std::int64_t drives = 0;
+    /// Branched chains: inboard body of each body (Branching::inboard), and the bodies that hang on
+    /// each (dca::Levels). Null for other chains.
+    std::int64_t const *inboard = nullptr, *first_child = nullptr, *child = nullptr;
 
     // Members below take a place k: the index of one body, or several consecutive bodies side by
     // side in vector lanes. The bodies of such a place have joints of one type, and none of them

@@ -101,6 +101,9 @@ struct JointScan {
         QuatAt<Place> const of_joint = joints.turn_of(state, k);
         write(motion.joint_turn, k, as_vector(of_joint));
         store<positions>(k, joints.motion(state, k, of_joint));
+        if constexpr (is_one_body<Place>)
+            if (joints.inboard && motion.axes2.origin && !joints.starts_chain(k))
+                put_meeting(k, joints.inboard[k], joints.meeting(state, k));
     }
     /// Composes the motions along a run, stores them relative to the body before the run, and
     /// returns the last one. Four bodies are loaded at a time so that their loads overlap.
@@ -137,6 +140,7 @@ struct JointScan {
     /// Motion of the body before the run of body k, relative to the ground.
     template <bool positions>
     CATENA_HD Motion before_run(std::int64_t k) const {
+        if (joints.inboard) return of_inboard_body<positions>(k);
         return unpacked<positions>(numbers_at<positions>(before, slot[k]));
     }
     template <bool positions, class Place>
@@ -144,8 +148,19 @@ struct JointScan {
         return as_motion(pick<MotionRecords::numbers>(
             before.origin, slot, several, Vector<RealAt<Place>, MotionRecords::numbers>{}));
     }
+    /// Motion of the body on which body k of a branched chain hangs, relative to the ground.
+    template <bool positions>
+    CATENA_HD Motion of_inboard_body(std::int64_t k) const {
+        if (joints.starts_chain(k)) return Motion::none();
+        std::int64_t const i = joints.inboard[k];
+        return {as_quaternion(motion.orientation.load(i)), motion.omega.load(i),
+                positions ? motion.origin.load(i) : Vec3::zero(),
+                positions ? motion.velocity.load(i) : Vec3::zero()};
+    }
     /// Angular velocity of before_run().
     CATENA_HD Vec3 omega_before_run(std::int64_t k) const {
+        if (joints.inboard)
+            return joints.starts_chain(k) ? Vec3::zero() : motion.omega.load(joints.inboard[k]);
         std::int64_t const s = slot[k];
         return {{before.number(s, first_of_omega), before.number(s, first_of_omega + 1),
                  before.number(s, first_of_omega + 2)}};
@@ -155,7 +170,8 @@ struct JointScan {
         return pick<MotionRecords::numbers>(before.origin + first_of_omega, slot, several,
                                             Vec3At<Place>{});
     }
-    /// Computes the motion of body k relative to the ground, and its handle 2 where that moves.
+    /// Computes the motion of body k relative to the ground, and its handle 2 where that moves. In
+    /// branched chains, the motion of the inboard body must be known.
     template <bool positions, class Place>
     CATENA_HD void set_motion(Place k) const {
         auto const own = load<positions>(k);
@@ -173,7 +189,7 @@ struct JointScan {
             write(motion.omega, k,
                   joints.kept_in_plane(joints.normal(k), compose(omega_before, own)));
         }
-        if (motion.axes2.origin && !joints.ends_chain(k)) set_meeting(k);
+        if (motion.axes2.origin && !joints.inboard && !joints.ends_chain(k)) set_meeting(k);
     }
 
     /// Packs the meeting of this rank's first joint into entry 0 of next_meeting, for the inboard
@@ -190,21 +206,23 @@ struct JointScan {
     /// from the outboard neighbour.
     CATENA_HD void set_meeting(std::int64_t inboard_body) const {
         if (inboard_body + 1 < joints.size)
-            return put_meeting(inboard_body, joints.meeting(state, inboard_body + 1));
+            return put_meeting(inboard_body, inboard_body, joints.meeting(state, inboard_body + 1));
         Vector<double, 9> const n = next_meeting.load(1);
-        put_meeting(inboard_body,
+        put_meeting(inboard_body, inboard_body,
                     {{{n[0], n[1], n[2]}},
                      axes_of(Vector<double, 6>{{n[3], n[4], n[5], n[6], n[7], n[8]}})});
     }
     template <class Place>
     CATENA_HD void set_meeting(Place const& inboard_bodies) const {
-        put_meeting(inboard_bodies, joints.meeting(state, inboard_bodies + 1));
+        put_meeting(inboard_bodies, inboard_bodies, joints.meeting(state, inboard_bodies + 1));
     }
-    /// Stores a meeting as handle 2 of the inboard body; r2 counts from the centre of mass.
+    /// Stores a meeting at place `entry` of handles 2; r2 counts from the centre of mass of the
+    /// inboard body.
     template <class Place>
-    CATENA_HD void put_meeting(Place inboard_body, MeetingOf<RealAt<Place>> const& m) const {
-        write(motion.r2, inboard_body, m.point + read(joints.r1, inboard_body));
-        write(motion.axes2, inboard_body, kept_axes(m.axes));
+    CATENA_HD void put_meeting(Place entry, Place inboard_body,
+                               MeetingOf<RealAt<Place>> const& m) const {
+        write(motion.r2, entry, m.point + read(joints.r1, inboard_body));
+        write(motion.axes2, entry, kept_axes(m.axes));
     }
 };
 

@@ -5,6 +5,7 @@
 
 #include "dca/host_space.hpp"
 #include "kinematics/joint_motion.hpp"
+#include "tree/levels.hpp"
 
 namespace catena {
 
@@ -31,18 +32,40 @@ class JointsIn {
           drive_(group.joints.drives),
           rotation_(group.joints.rotation),
           translation_(group.joints.translation),
-          first_axis_(group.joints.first_axis) {}
+          first_axis_(group.joints.first_axis),
+          levels_(group.beads || group.linked ? std::span<std::int64_t const>{}
+                                              : std::span(group.branching.inboard)),
+          inboard_(group.branching.inboard),
+          first_child_(levels_.first_child),
+          child_(levels_.child),
+          body_of_level_(levels_.body) {}
 
     JointsView view() const {
-        return {group_.size,        joint_.data(),
-                bodies_.is_first,   bodies_.is_last,
-                group_.planar,      group_.joints.has_screws,
-                bodies_.r1,         bodies_.axes1,
-                rotation_.view(),   translation_.view(),
-                first_axis_.view(), bodies_.screw,
-                piece_.data(),      std::ssize(first_body_),
-                drive_.data(),      std::ssize(group_.joints.drives)};
+        bool const by_levels = levels_.levels() > 0;
+        return {group_.size,
+                joint_.data(),
+                bodies_.is_first,
+                bodies_.is_last,
+                group_.planar,
+                group_.joints.has_screws,
+                bodies_.r1,
+                bodies_.axes1,
+                rotation_.view(),
+                translation_.view(),
+                first_axis_.view(),
+                bodies_.screw,
+                piece_.data(),
+                std::ssize(first_body_),
+                drive_.data(),
+                std::ssize(group_.joints.drives),
+                by_levels ? inboard_.data() : nullptr,
+                by_levels ? first_child_.data() : nullptr,
+                by_levels ? child_.data() : nullptr};
     }
+    /// Levels of branched chains, on the host and as a list of their bodies in the Space. There are
+    /// none of other chains.
+    dca::Levels const& levels() const { return levels_; }
+    List<std::int64_t> const& body_of_level() const { return body_of_level_; }
     /// Constant properties of the bodies, shared with the solver of the same Space.
     typename Space::Model const& model() const { return model_; }
     GroupView const& bodies() const { return bodies_; }
@@ -57,6 +80,8 @@ class JointsIn {
     List<LocalDrive> drive_;
     Fixed<4> rotation_;
     Fixed<3> translation_, first_axis_;
+    dca::Levels levels_;
+    List<std::int64_t> inboard_, first_child_, child_, body_of_level_;
 };
 
 }  // namespace catena

@@ -55,34 +55,39 @@ Wrench in_double(oracle::SpatialForce<long double> const& f) {
 }
 
 /// Sums of the magnitudes of the forces and moments on a body, and of the accelerations that they
-/// add at its handles.
+/// add: at the centre of mass, and per radius about it.
 struct Terms {
-    double force = 0, moment = 0, linear1 = 0, linear2 = 0, angular = 0;
+    double force = 0, moment = 0, linear = 0, angular = 0;
+    /// Acceleration that they add at a handle at `arm` from the centre of mass.
+    double at(Vec3 const& arm) const { return linear + angular * norm(arm); }
 };
 
-/// Returns the terms of body k.
-Terms terms_of(ChainSpec const& chain, oracle::Kinematics<double> const& at, Exact const& exact,
-               std::size_t k) {
+/// Returns the terms of every body.
+std::vector<Terms> terms_of(ChainSpec const& chain, oracle::Kinematics<double> const& at,
+                            Exact const& exact) {
     BodyArrays const& b = chain.bodies;
-    Mat3 const& r = at.orientation[k];
-    bool const last = k + 1 == b.size();
-    Vec3 const arm1 = at.origin[k] - at.com_position[k],
-               arm2 = last ? r * (chain.tip_joint.translation - b.com[k])
-                           : at.origin[k + 1] - at.com_position[k];
-    Wrench const inboard = in_double(exact.joint_force[k]);
-    Wrench const outboard = in_double(last ? exact.tip_force : exact.joint_force[k + 1]);
-    auto const wrench = b.wrench.empty() ? std::pair{Vec3::zero(), Vec3::zero()} : b.wrench[k];
-    oracle::Cholesky<double, 3> const inertia(full(b.inertia[k]));
-    Terms t;
-    for (Vec3 const& f : {inboard.force, outboard.force, wrench.second}) t.force += norm(f);
-    for (Vec3 const& m : {inboard.torque, cross(arm1, inboard.force), outboard.torque,
-                          cross(arm2, outboard.force), wrench.first}) {
-        t.moment += norm(m);
-        t.angular += norm(inertia.solve(transposed_times(r, m)));
+    std::vector<Terms> all(b.size());
+    auto const add = [&](std::size_t k, Wrench const& wrench, Vec3 const& arm) {
+        oracle::Cholesky<double, 3> const inertia(full(b.inertia[k]));
+        all[k].force += norm(wrench.force);
+        for (Vec3 const& m : {wrench.torque, cross(arm, wrench.force)}) {
+            all[k].moment += norm(m);
+            all[k].angular += norm(inertia.solve(transposed_times(at.orientation[k], m)));
+        }
+    };
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        Wrench const inboard = in_double(exact.joint_force[k]);
+        add(k, inboard, at.origin[k] - at.com_position[k]);
+        if (k > 0) {
+            std::size_t const before = scene::inboard_of(chain.parent, k);
+            add(before, inboard, at.origin[k] - at.com_position[before]);
+        }
+        if (!b.wrench.empty()) add(k, {b.wrench[k].first, b.wrench[k].second}, Vec3::zero());
     }
-    t.linear1 = t.force / b.mass[k] + t.angular * norm(arm1);
-    t.linear2 = t.force / b.mass[k] + t.angular * norm(arm2);
-    return t;
+    add(b.size() - 1, in_double(exact.tip_force),
+        at.orientation.back() * (chain.tip_joint.translation - b.com.back()));
+    for (std::size_t k = 0; k < b.size(); ++k) all[k].linear = all[k].force / b.mass[k];
+    return all;
 }
 
 /// Perturbs the force on each bead, and the closing of each link by a fraction of what forces and
@@ -115,14 +120,19 @@ void nudge_bodies(Nudged& n, ChainSpec const& chain, oracle::Loads const& loads,
     BodyArrays& b = n.chain.bodies;
     auto const at = oracle::kinematics<double>(chain, loads);
     b.wrench.resize(b.size(), {Vec3::zero(), Vec3::zero()});
-    Terms before;
+    std::vector<Terms> const terms = terms_of(chain, at, exact);
     for (std::size_t k = 0; k < b.size(); ++k) {
-        Terms const t = terms_of(chain, at, exact, k);
+        Terms const& t = terms[k];
+        double turning = t.angular, linear = t.at(at.origin[k] - at.com_position[k]);
+        if (k > 0) {
+            std::size_t const before = scene::inboard_of(chain.parent, k);
+            turning += terms[before].angular;
+            linear += terms[before].at(at.origin[k] - at.com_position[before]);
+        }
         b.wrench[k].first = b.wrench[k].first + draws.in_cube(size * t.moment);
         b.wrench[k].second = b.wrench[k].second + draws.in_cube(size * t.force);
-        Vec3 const turning = draws.in_cube(size * (t.angular + before.angular));
-        n.loads.gaps.emplace_back(turning, draws.in_cube(size * (t.linear1 + before.linear2)));
-        before = t;
+        Vec3 const of_turning = draws.in_cube(size * turning);
+        n.loads.gaps.emplace_back(of_turning, draws.in_cube(size * linear));
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "joints/joint_models.hpp"
 #include "observe/observables.hpp"
+#include "scene/branches.hpp"
 #include "terms/force_terms.hpp"
 
 namespace catena {
@@ -61,7 +62,8 @@ class Pushes {
 
 /// Adds a joint's torque on its outboard body and the opposite torque on its inboard body. A force
 /// acts with its arms on both.
-void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes) {
+void add_torque(BodyArrays const& b, scene::Parents parents, std::size_t k,
+                std::vector<Pushes>& pushes) {
     Vec3 const& torque = b.torque[k];
     double size = 0, pushing = 0, shift = 0;
     for (int i = 0; i < 3; ++i) {
@@ -72,7 +74,8 @@ void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes)
     if (turns_twice(b.joint[k]))
         size /= norm(cross(b.first_axis[k],
                            b.axis[k]));  // axes that are not perpendicular require larger torques
-    Pushes* const inboard = k > 0 ? &pushes[k - 1] : nullptr;
+    std::size_t const before = k > 0 ? scene::inboard_of(parents, k) : 0;
+    Pushes* const inboard = k > 0 ? &pushes[before] : nullptr;
     if (pivots(b.joint[k])) {
         pushes[k].torque(torque[0] * b.axis[k]);
         if (inboard) inboard->torque(torque[0] * (b.rotation[k] * b.axis[k]));
@@ -82,7 +85,7 @@ void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes)
     pushes[k].torque(pushing * norm(b.com[k]));
     if (!inboard) return;
     inboard->torque(size), inboard->force(pushing);
-    inboard->torque(pushing * (norm(b.translation[k] - b.com[k - 1]) + shift));
+    inboard->torque(pushing * (norm(b.translation[k] - b.com[before]) + shift));
 }
 
 /// Size of the constant forces on body k whose energy a column counts.
@@ -130,7 +133,7 @@ double square_of(Scene const& scene, ChainSpec const& chain, bool with_potential
         pushes[k].force(gravity * b.mass[k]);
         add_wrenches(chain, k, pushes[k]);
         if (with_potentials) pushes[k].force(held_force(chain, k));
-        if (!b.torque.empty()) add_torque(b, k, pushes);
+        if (!b.torque.empty()) add_torque(b, chain.parent, k, pushes);
     }
     for (Pushes const& each : pushes) sum += each.square();
     return sum;

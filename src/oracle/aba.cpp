@@ -174,8 +174,10 @@ class Solver {
     OracleResult<S> solve() {
         for (std::size_t k = links_.size(); k-- > 0;) gather(k);
         OracleResult<S> result;
-        Motion<S> a;
-        for (std::size_t k = 0; k < links_.size(); ++k) a = release(k, a, result);
+        std::vector<Motion<S>> motion;
+        for (std::size_t k = 0; k < links_.size(); ++k)
+            motion.push_back(release(
+                k, links_[k].on_ground() ? Motion<S>{} : motion[links_[k].before()], result));
         return result;
     }
 
@@ -185,7 +187,8 @@ class Solver {
     void refer_to_com() {
         from_origin_ = links_[0].com;
         links_[0].com = V3<S>::zero();
-        if (links_.size() > 1) links_[1].translation = links_[1].translation - from_origin_;
+        for (Link<S>& link : links_)
+            if (link.inboard == 0) link.translation = link.translation - from_origin_;
     }
 
     /// Inward pass: completes the articulated-body inertia of body k and adds it to the inboard
@@ -195,7 +198,7 @@ class Solver {
         Link<S> const& link = links_[k];
         add_rigid_body(link, attitude_[k], gravity_, a);
         if (floats(link.type)) return;
-        V3<S> const w = k == 0 ? V3<S>::zero() : attitude_[k - 1].omega,
+        V3<S> const w = link.on_ground() ? V3<S>::zero() : attitude_[link.before()].omega,
                     w_here = attitude_[k].omega - link.rate;
         a.closure = {cross(w_here, link.rate) + link.drift,
                      transposed_times(link.rotation, cross(w, cross(w, link.translation))) +
@@ -207,7 +210,7 @@ class Solver {
         else
             pass_coordinates(link, k, a);
         a.bias_behind = a.bias_behind + a.behind * a.closure;
-        if (k > 0) hand_inboard(link, a, bodies_[k - 1]);
+        if (!link.on_ground()) hand_inboard(link, a, bodies_[link.before()]);
     }
 
     /// Outward pass: computes the acceleration of body k from that of its inboard body, and stores

@@ -57,7 +57,7 @@ class Assembly {
             Body<S> const& b = bodies_[k];
             if (floats(links_[k].type)) continue;
             add_joint_end(b, b.to_inboard, b, S(1), s);
-            if (k > 0) add_joint_end(bodies_[k - 1], to_outboard(k), b, S(-1), s);
+            if (!links_[k].on_ground()) add_joint_end(inboard_of(k), to_outboard(k), b, S(-1), s);
             add_closure(b, s);
         }
         for (std::size_t i = 0; i < closures_.size(); ++i) {
@@ -108,7 +108,7 @@ class Assembly {
     /// Sets the inboard joint of body k and numbers its constraint rows.
     void add_joint(std::size_t k, Body<S>& b) {
         Link<S> const& link = links_[k];
-        V3<S> const inboard = k == 0 ? V3<S>::zero() : bodies_[k - 1].omega,
+        V3<S> const inboard = link.on_ground() ? V3<S>::zero() : inboard_of(k).omega,
                     slide = b.orientation * link.slide;
         b.closure = {cross(inboard, b.orientation * link.rate) + b.orientation * link.drift,
                      S(2) * cross(inboard, slide)};
@@ -135,9 +135,11 @@ class Assembly {
         }
     }
 
+    /// Inboard body of joint k, which does not join to the ground.
+    Body<S> const& inboard_of(std::size_t k) const { return bodies_[links_[k].before()]; }
     /// Vector from the centre of mass of joint k's inboard body to the joint, W.
     V3<S> to_outboard(std::size_t k) const {
-        return bodies_[k - 1].orientation * (links_[k].translation - links_[k - 1].com);
+        return inboard_of(k).orientation * (links_[k].translation - links_[links_[k].before()].com);
     }
 
     /// Adds Newton's and Euler's equations of body k.
@@ -150,10 +152,10 @@ class Assembly {
         s.add(b.motion, link.mass * gravity_ + link.applied_force + b.given.force);
         s.add(b.motion + 3, link.applied_torque - cross(b.omega, inertia * b.omega));
         s.add(b.motion + 3, b.given.torque + cross(b.to_inboard, b.given.force));
-        if (k + 1 == bodies_.size()) return;
-        SpatialForce<S> const& next = bodies_[k + 1].given;
-        s.add(b.motion, -next.force);
-        s.add(b.motion + 3, -next.torque - cross(to_outboard(k + 1), next.force));
+        if (link.on_ground()) return;
+        Index const before = inboard_of(k).motion;
+        s.add(before, -b.given.force);
+        s.add(before + 3, -b.given.torque - cross(to_outboard(k), b.given.force));
     }
 
     /// Adds one end of a joint. `arm`: vector from the body's centre of mass to the joint. `sign`:
@@ -198,8 +200,8 @@ class Assembly {
         Body<S> const& b = bodies_[k];
         if (links_[k].driven) return links_[k].prescribed;
         Motion<S> relative = at_point(b, b.to_inboard, x);
-        if (k > 0) {
-            Motion<S> const inboard = at_point(bodies_[k - 1], to_outboard(k), x);
+        if (!links_[k].on_ground()) {
+            Motion<S> const inboard = at_point(inboard_of(k), to_outboard(k), x);
             relative = {relative.angular - inboard.angular, relative.linear - inboard.linear};
         }
         V3<S> const angular = relative.angular - b.closure.angular,

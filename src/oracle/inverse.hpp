@@ -70,14 +70,21 @@ class Inverse {
     /// Outward recursion: velocities and accelerations.
     void forward(std::vector<V3<S>> const& qdd, V3<S> const& base_acceleration,
                  std::vector<InverseBody<S>>& bodies) const {
-        M3<S> inboard = M3<S>::identity();
-        V3<S> omega = V3<S>::zero(), alpha = omega,
-              // Motion of the inboard body; `linear` is the acceleration of its origin.
-            linear = omega;
+        // Accelerations of the bodies' origins.
+        std::vector<V3<S>> of_origin(links_.size());
         for (std::size_t k = 0; k < links_.size(); ++k) {
             Link<S> const& link = links_[k];
             InverseBody<S>& b = bodies[k];
             M3<S> const& r = attitude_[k].orientation;
+            // Motion of the inboard body.
+            M3<S> inboard = M3<S>::identity();
+            V3<S> omega = V3<S>::zero(), alpha = omega, linear = omega;
+            if (!link.on_ground()) {
+                inboard = attitude_[link.before()].orientation;
+                omega = bodies[link.before()].omega;
+                alpha = bodies[link.before()].alpha;
+                linear = of_origin[link.before()];
+            }
             b.from_inboard = inboard * link.translation;  // includes the joint's displacement
             linear =
                 linear + cross(alpha, b.from_inboard) + cross(omega, cross(omega, b.from_inboard));
@@ -87,7 +94,7 @@ class Inverse {
                 linear = linear + S(2) * cross(omega, r * link.slide) + r * relative.linear;
             alpha = alpha + r * (relative.angular + link.drift) + cross(omega, r * link.rate);
             omega = r * attitude_[k].omega;
-            inboard = r;
+            of_origin[k] = linear;
             b.omega = omega;
             b.alpha = alpha;
             b.to_com = r * link.com;
@@ -111,14 +118,15 @@ class Inverse {
         b.torque.add(-cross(b.to_com, weight + link.applied_force));
         b.torque.add(-link.applied_torque);
         if (k == 0) add_push(b, pushed_first_);
-        if (k + 1 == bodies.size()) {
-            add_push(b, pushed_);
-            return;
-        }
-        InverseBody<S> const& next = bodies[k + 1];
-        b.force.add(next.force.sum);
-        b.torque.add(next.torque.sum);
-        b.torque.add(cross(next.from_inboard, next.force.sum));
+        if (k + 1 == bodies.size()) add_push(b, pushed_);
+        if (!link.on_ground()) hand_inboard(b, bodies[link.before()]);
+    }
+
+    /// Adds the reaction to the wrench through a body's inboard joint to the inboard body.
+    static void hand_inboard(InverseBody<S> const& b, InverseBody<S>& inboard) {
+        inboard.force.add(b.force.sum);
+        inboard.torque.add(b.torque.sum);
+        inboard.torque.add(cross(b.from_inboard, b.force.sum));
     }
 
     /// Subtracts a wrench at the centre of mass from the balances.

@@ -6,6 +6,7 @@
 
 #include "error.hpp"
 #include "oracle/rotations.hpp"
+#include "scene/branches.hpp"
 #include "terms/force_terms.hpp"
 
 namespace catena::oracle {
@@ -325,6 +326,7 @@ std::vector<Link<S>> read_links(ChainSpec const& chain, Loads const& loads) {
     std::vector<Link<S>> links(b.size());
     for (std::size_t k = 0; k < b.size(); ++k) {
         Link<S>& link = links[k];
+        if (k > 0) link.inboard = static_cast<std::ptrdiff_t>(scene::inboard_of(chain.parent, k));
         read_joint(chain, loads, k, link);
         link.mass = S(b.mass[k]);
         link.com = lift<S>(b.com[k]);
@@ -338,8 +340,9 @@ std::vector<Link<S>> read_links(ChainSpec const& chain, Loads const& loads) {
 template <class S>
 std::vector<Attitude<S>> attitudes(std::vector<Link<S>> const& links) {
     std::vector<Attitude<S>> all;
-    Attitude<S> a{M3<S>::identity(), V3<S>::zero(), V3<S>::zero(), V3<S>::zero()};
+    Attitude<S> const ground{M3<S>::identity(), V3<S>::zero(), V3<S>::zero(), V3<S>::zero()};
     for (Link<S> const& link : links) {
+        Attitude<S> a = link.on_ground() ? ground : all[link.before()];
         V3<S> const to_origin = a.orientation * link.translation,
                     carried = cross(a.orientation * a.omega, to_origin);
         a.origin = a.origin + to_origin;

@@ -34,6 +34,8 @@ S power(Motion<S> const& m, SpatialForce<S> const& f) {
 template <class S>
 struct Link {
     JointType type = JointType::free;
+    /// Index of the inboard body; -1 for the ground.
+    std::ptrdiff_t inboard = -1;
     /// True for prescribed motion.
     bool driven = false;
     /// Maps components in B to components in the inboard body's axes (free: W).
@@ -63,6 +65,10 @@ struct Link {
 
     /// Number of coordinates whose second derivatives follow from the forces.
     int unknown() const { return driven ? 0 : dof; }
+    /// True if the joint joins the body to the ground.
+    bool on_ground() const { return inboard < 0; }
+    /// Index of the inboard body. Precondition: not on_ground().
+    std::size_t before() const { return static_cast<std::size_t>(inboard); }
 };
 /// Geometry and coordinates of a joint in the oracle's scalar, as in BodyArrays and TipJoint.
 template <class S>

@@ -4,6 +4,7 @@
 
 #include "dca/articulated.hpp"
 #include "dca/simd/side_by_side.hpp"
+#include "dca/tree_body.hpp"
 #include "joints/joint_models.hpp"
 #include "math/with_number.hpp"
 #include "plan/describe.hpp"
@@ -102,6 +103,9 @@ double numbers_of(DynamicsSpec const& dynamics, bool stands) {
 /// Returns the bytes of a branched chain's solver: segments and joints, beads with side paths, and
 /// the numbers and lists of its paths.
 double bytes_of_branches(ChainSpec const& chain, bool pairwise, SolverSizes const& size) {
+    if (scene::is_body_tree(chain))
+        return static_cast<double>(chain.size()) *
+               (sizeof(dca::TreeBody<true>) + 3 * sizeof(std::int64_t));
     std::vector<std::int64_t> inboard(chain.size(), -1);
     for (std::size_t k = 1; k < inboard.size(); ++k)
         inboard[k] = static_cast<std::int64_t>(scene::inboard_of(chain.parent, k));

@@ -69,6 +69,9 @@ Base base_of(Fields const& fields, Node const& source) {
 
 /// Throws InputError unless all axes of a chain with `planar` joints are parallel.
 void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& planar) {
+    if (chain.is_branched())
+        fail(planar, "not in this version: planar joints of a branched chain",
+             "write `type: revolute`");
     std::size_t odd = 0;
     if (axes_are_parallel(chain, odd)) return;
     bool const body = odd < chain.bodies.size() && source.kind == Node::Kind::list;
@@ -281,6 +284,7 @@ FromSource written_bodies(ChainRequest& request, Node const& source, ChainSpec& 
         Node const& file = Fields(source, keys::hdf5).need("hdf5", "hdf5: chain.h5");
         ChainSpec made = read_hdf5_bodies(resolved(text(file), request.scene.file), request.base);
         chain.bodies = std::move(made.bodies);
+        chain.parent = std::move(made.parent);
         chain.term_numbers = std::move(made.term_numbers);
         return {};
     }
@@ -297,6 +301,7 @@ FromSource written_bodies(ChainRequest& request, Node const& source, ChainSpec& 
     request.allow("rigid bodies", {});
     ExplicitBodies made = read_bodies(source, request.base);
     chain.bodies = std::move(made.bodies);
+    chain.parent = std::move(made.parent);
     return {true, made.planar};
 }
 

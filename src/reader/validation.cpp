@@ -98,6 +98,12 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
                  fmt::format("integrator {} works in joint coordinates, chain `{}` has links",
                              name_of(integrator), shown(chain.name)),
                  "use `integrator: rattle` or `g-baoab`");
+        if (is_implicit(integrator) && is_body_tree(chain))
+            fail(at,
+                 fmt::format("not in this version: implicit springs and dampers of branched chains "
+                             "of rigid bodies, such as chain `{}`",
+                             shown(chain.name)),
+                 joint_integrators + ", or `baoab`");
         if (is_implicit(integrator)) check_implicit(scene.dynamics, draft);
         if (is_langevin(integrator)) refuse_resistance(root, scene, draft);
         return;
@@ -107,6 +113,12 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
              fmt::format("integrator {} works in absolute coordinates, chain `{}` has loops",
                          name_of(integrator), shown(chain.name)),
              joint_integrators);
+    if (is_body_tree(chain))
+        fail(
+            at,
+            fmt::format("integrator {} moves no branched chains of rigid bodies, chain `{}` is one",
+                        name_of(integrator), shown(chain.name)),
+            joint_integrators);
     if (auto const odd = joint_without_absolute_coordinates(chain)) {
         std::string const place =
             odd->first < chain.bodies.size() ? fmt::format("joint {}", odd->first + 1) : "its tip";
@@ -127,17 +139,35 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
 /// Checks that articulated handles support the chain. `projected`: some chain of the scene has
 /// projected handles only.
 void check_handles(Node const& root, Scene const& scene, Draft const& draft, bool projected) {
+    if (scene.solver.handles == Handles::full && is_body_tree(draft.chain))
+        fail(*root.find("solver")->find("handles"),
+             fmt::format("full handles for chain `{}`, a branched chain of rigid bodies",
+                         shown(draft.chain.name)),
+             "leave it out: such chains have articulated handles");
     if (scene.solver.handles != Handles::articulated || takes_articulated_handles(draft.chain))
         return;
     ChainSpec const& chain = draft.chain;
     char const* const why = chain.bodies.size() == 0 ? "has links"
                             : chain.is_ring()        ? "is a ring"
-                            : chain.has_loops()      ? "has loops"
                                                      : "has a jointed tip";
     fail(*root.find("solver")->find("handles"),
          fmt::format("articulated handles for chain `{}`, which {}", shown(chain.name), why),
          std::string(projected ? "use `projected`" : "use `projected` or `full`") +
              ": articulated ones are for open chains of rigid bodies");
+}
+
+/// Sets the handles of a scene of branched chains of rigid bodies, which have articulated handles
+/// whatever the other chains have. Throws InputError if all chains are such and others are written.
+void set_handles(Node const& root, Scene& scene, std::vector<Draft> const& drafts) {
+    if (drafts.empty() || scene.solver.handles != Handles::projected ||
+        !std::all_of(drafts.begin(), drafts.end(),
+                     [](Draft const& d) { return is_body_tree(d.chain); }))
+        return;
+    Node const* const section = root.find("solver");
+    if (Node const* const written = section ? section->find("handles") : nullptr)
+        fail(*written, "projected handles for branched chains of rigid bodies",
+             "leave it out: such chains have articulated handles");
+    scene.solver.handles = Handles::articulated;
 }
 
 /// Checks that the Fixman correction supports the chain.
@@ -205,6 +235,9 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
     if (draft.chain.has_loops())
         fail(at, "thermal velocities in a chain with loops",
              "write `velocities: zero`, or give each joint its `qd`");
+    if (is_body_tree(draft.chain))
+        fail(at, "thermal velocities for a branched chain of rigid bodies",
+             "write `velocities: zero`, or give each joint its `qd`; `integrator: baoab` warms it");
     if (auto const odd = joint_without_absolute_coordinates(draft.chain))
         fail(at, fmt::format("thermal velocities for {} joints", name_of(odd->second)),
              "write `velocities: zero`, or give each joint its `qd`");
@@ -330,8 +363,9 @@ void note_forces_left_out(Scene& scene, std::vector<Draft> const& drafts) {
 
 void check_together(Node const& root, Scene& scene, std::vector<Draft> const& drafts) {
     check_names(drafts);
-    bool const projected = std::any_of(drafts.begin(), drafts.end(),
-                                       [](Draft const& d) { return goes_by_paths(d.chain); });
+    bool const projected = std::any_of(drafts.begin(), drafts.end(), [](Draft const& d) {
+        return goes_by_paths(d.chain) && !is_body_tree(d.chain);
+    });
     Draft const* previous = nullptr;
     for (Draft const& draft : drafts) {
         // Copies of one entry have the same properties.
@@ -343,6 +377,7 @@ void check_together(Node const& root, Scene& scene, std::vector<Draft> const& dr
         check_fixman(root, scene.dynamics, draft);
         check_thermal(root, scene.dynamics, draft);
     }
+    set_handles(root, scene, drafts);
     check_temperature(root, scene.output, scene.dynamics, drafts);
     check_end_to_end(root, scene.output, drafts);
     note_forces_left_out(scene, drafts);

@@ -129,14 +129,16 @@ void refuse_large_checkpoint(OwnState const& own, Scene const& scene,
 void RunFolder::open(Topology const& topology, Observables const& observables,
                      Continuation const& go_on) {
     std::optional<Continuation> const after = appends_ ? std::optional(go_on) : std::nullopt;
-    on_first_rank(communicator_, [&] {
+    on_disk([&] {
         if (wants_topology()) topology_ = std::make_unique<TopologyWriter>(folder_, topology);
     });
-    TrajectoryOfRanks made =
-        make_trajectory(communicator_, path("trajectory.h5md"), topology, scene_.output.velocities,
-                        scene_.output.joint_forces, after);
-    trajectory_ = std::move(made.writer);
-    frames_way_ = made.way;
+    telling_way_back([&] {
+        TrajectoryOfRanks made =
+            make_trajectory(communicator_, path("trajectory.h5md"), topology,
+                            scene_.output.velocities, scene_.output.joint_forces, after);
+        trajectory_ = std::move(made.writer);
+        frames_way_ = made.way;
+    });
     on_first_rank(communicator_, [&] {
         auto const table = [&](char const* name, std::vector<std::string> const& columns) {
             return std::make_unique<ObservablesWriter>(path(name), columns, after,
@@ -154,7 +156,12 @@ std::int64_t RunFolder::records_before(std::int64_t n) const {
 
 std::string RunFolder::way_back() const {
     std::string const checkpoint = newest_checkpoint();
-    return checkpoint.empty() ? "" : ": correct this and continue with --restart " + checkpoint;
+    if (checkpoint.empty())
+        return ": no checkpoint was written yet; correct this and run it again with --overwrite";
+    return ": the last checkpoint and the frames up to it are whole; correct this and continue "
+           "with "
+           "--restart " +
+           checkpoint;
 }
 
 template <class Action>

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <numeric>
@@ -32,6 +33,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
         }
     }
     return row[b.size()];
+}
+
+/// Returns a name in lower case, without the marks between its words: `CALVADOS_2` is `calvados2`.
+std::string folded(std::string_view name) {
+    std::string plain;
+    for (char const c : name)
+        if (c != '_' && c != '-' && c != ' ')
+            plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return plain;
 }
 
 /// Returns the node's key, or the key of the list that holds it.
@@ -264,10 +274,11 @@ Mat3 matrix3(Node const& node) {
 
 std::optional<std::string> nearest(std::string_view name, std::span<std::string_view const> known) {
     if (name.size() > 60) return std::nullopt;
+    std::string const plain = folded(name);
     std::size_t best = std::max<std::size_t>(2, name.size() / 3) + 1;
     std::optional<std::string> found;
     for (std::string_view const candidate : known) {
-        std::size_t const distance = edit_distance(name, candidate);
+        std::size_t const distance = edit_distance(plain, folded(candidate));
         if (distance < best && distance < candidate.size()) {
             best = distance;
             found = std::string(candidate);

@@ -15,9 +15,8 @@
 namespace catena {
 namespace {
 
-int constexpr threads_of_cpu = 4;  // fixed, because the sum of forces depends on it
-double constexpr pushed = 0.3;     // nm: beads this near push each other apart
-double constexpr push = 1e6;       // kJ/mol/nm: larger than any force on a bead in thermal motion
+double constexpr pushed = 0.3;  // nm: beads this near push each other apart
+double constexpr push = 1e6;    // kJ/mol/nm: larger than any force on a bead in thermal motion
 
 }  // namespace
 
@@ -33,7 +32,7 @@ std::unique_ptr<OpenMmForce> SingleRankForces::make(Scene const& scene,
     beads_.first_of_rank = {0, beads_.size()};
     OpenMmSpec spec = *scene.forces.openmm;
     spec.platform = spec.platform == "Reference" ? "Reference" : "CPU";
-    spec.threads = spec.threads > 0 ? spec.threads : threads_of_cpu;
+    spec.threads = 1;  // OpenMM's threads share pairs by who comes first, and sums differ
     spec.precision = "", spec.path = "inline", spec.layers = "none";
     spec.replicate = spec.audit = false;
     return reach ? make_openmm_contacts(spec, beads_, *alone_, *reach)

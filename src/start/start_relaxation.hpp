@@ -42,9 +42,10 @@ RelaxationSays relaxation_says(bool quiet);
 /// limited in length, and the links are closed after each. Forces between near beads act first,
 /// then all forces, with at most 3000 evaluations each; large scenes are limited to fewer
 /// evaluations of all forces. Rank 0 computes alone, by OpenMM's platform Reference if the scene
-/// requests it. Otherwise it uses CPU with a number of threads that does not depend on the ranks.
-/// All ranks receive its positions. Throws InputError if the start remains absurd, for beads on
-/// other joints, and without OpenMM's forces. Precondition: scene.relax. Collective.
+/// requests it. Otherwise it uses CPU with one thread, because forces of several threads differ in
+/// their last bits from run to run. All ranks receive its positions. Throws InputError if the start
+/// remains absurd, for beads on other joints, and without OpenMM's forces. Precondition:
+/// scene.relax. Collective.
 RelaxedScene relax_start(Scene const&, Communicator const&, RelaxationSays const& = {});
 
 /// Relaxes the start if the scene requests it; else the result is empty. Collective.

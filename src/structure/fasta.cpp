@@ -16,6 +16,11 @@ namespace catena::scene {
 
 namespace {
 
+/// Letters that are nucleotides as well as amino acids.
+std::string_view constexpr nucleotide_letters = "ACGTU";
+/// Number of letters from which on a sequence of nucleotides' letters is noted.
+std::size_t constexpr least_ambiguous = 4;
+
 /// One record of a FASTA file.
 struct Record {
     std::string header;  // the `>` is removed
@@ -164,21 +169,28 @@ void note_three_letters(std::string const& text, std::string const& letters, Nod
                     source.path(), letters.size(), letters[0], letters[1], letters[2]));
 }
 
-/// Notes sequences of proteins that may be RNA without U, such as poly-A, or DNA.
+/// The letters of nucleotides that a text has, listed: "letter A", "letters A, C and G".
+std::string nucleotides_of(std::string const& letters) {
+    std::vector<char> found;
+    for (char const base : nucleotide_letters)
+        if (letters.find(base) != std::string::npos) found.push_back(base);
+    std::string list = found.size() > 1 ? "letters " : "letter ";
+    for (std::size_t k = 0; k < found.size(); ++k) {
+        if (k > 0) list += k + 1 < found.size() ? ", " : " and ";
+        list += found[k];
+    }
+    return list;
+}
+
+/// Notes sequences of proteins that may be RNA or DNA, because all their letters are nucleotides.
 void note_nucleotides(std::string const& letters, Node const& source, ResidueTable const& table,
                       Scene& scene) {
     ResidueType const* const first = table.find('A');
-    if (!first || first->name != "ALA" || letters.size() < 8 ||
-        letters.find_first_not_of("ACGT") != std::string::npos)
+    if (!first || first->name != "ALA" || letters.size() < least_ambiguous ||
+        letters.find_first_not_of(nucleotide_letters) != std::string::npos)
         return;
-    bool const poly_a = letters.find_first_not_of('A') == std::string::npos;
-    for (char const base : {'A', 'C', 'G'})
-        if (!poly_a && letters.find(base) == std::string::npos) return;
-    char const* const found = poly_a                                   ? "letter A"
-                              : letters.find('T') == std::string::npos ? "letters A, C and G"
-                                                                       : "letters A, C, G and T";
     scene.note(fmt::format("`{}` has the {} alone and is read as a protein: {}", source.path(),
-                           found,
+                           nucleotides_of(letters),
                            "RNA takes `model: calvados_rna` and the letter U, DNA has no model"));
 }
 

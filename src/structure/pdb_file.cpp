@@ -167,6 +167,38 @@ std::optional<std::int64_t> model_number(std::string_view line) {
     return read ? std::optional(static_cast<std::int64_t>(number)) : std::nullopt;
 }
 
+/// Finds out whether a file was cut: within its last line, or before the end of its last model.
+class EndOfFile {
+  public:
+    /// Takes each line in turn.
+    void take(std::string_view line) {
+        std::string_view const written = line.substr(0, line.find_last_not_of(blanks) + 1);
+        if (written.empty()) return;
+        if (is_record(line, "MODEL")) in_model_ = true;
+        if (is_record(line, "ENDMDL") || is_record(line, "END")) in_model_ = false;
+        if (last_is_atom_) least_ = std::min(least_, last_.size());
+        last_ = written;
+        last_is_atom_ = is_atom(line);
+    }
+    /// What shows that the file was cut; empty if nothing does.
+    std::string sign() const {
+        if (last_is_atom_ && last_.size() < least_ && least_ != std::string_view::npos)
+            return fmt::format(
+                "the last line is an atom's of {} columns, all others have {} or more",
+                last_.size(), least_);
+        for (std::string_view const name : {"ATOM", "HETATM", "TER", "ANISOU", "CONECT", "ENDMDL"})
+            if (last_.size() < name.size() && name.starts_with(last_) && last_ != "END")
+                return fmt::format("the last line is `{}`, the beginning of {}", last_, name);
+        return in_model_ ? "the last model has no ENDMDL" : "";
+    }
+
+  private:
+    std::string_view last_;  // without blanks at its end
+    bool last_is_atom_ = false, in_model_ = false;
+    std::size_t least_ =
+        std::string_view::npos;  // columns of the shortest atom before the last line
+};
+
 }  // namespace
 
 bool ModelChoice::begin(std::int64_t number, PdbSummary& summary) {
@@ -185,8 +217,10 @@ PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path,
     int part = 0, number = 0;
     bool open = true, begun = false;   // inside the chosen model; atoms of a model have been read
     std::optional<std::int64_t> next;  // number of the next model
+    EndOfFile end;
     for (std::string_view line; next_line(text, line);) {
         ++number;
+        end.take(line);
         if (is_record(line, "MODEL") || is_record(line, "ENDMDL") || is_record(line, "END")) {
             begun = false;
             if (is_record(line, "MODEL")) next = model_number(line);
@@ -208,6 +242,7 @@ PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path,
             take(atom);
         }
     }
+    summary.cut = end.sign();
     return summary;
 }
 

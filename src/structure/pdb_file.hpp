@@ -64,6 +64,9 @@ struct PdbSummary {
     std::optional<Vec3> cell = {};
     /// Number of data blocks with atoms; the first is read.
     int blocks = 1;
+    /// What shows that the file ends too early ("the last model has no ENDMDL");
+    /// empty if nothing does.
+    std::string cut = {};
 };
 
 /// Receives the atoms of a file one after the other.

@@ -360,11 +360,16 @@ void note_bridges(std::int64_t bridges, PdbSites& made) {
             bridges == 1 ? "is" : "are"));
 }
 
-/// Notes further models and data blocks that are not read.
+/// Notes further models and data blocks that are not read, and files that end too early.
 void note_models(PdbSummary const& summary, StructureChoice const& choice, PdbSites& made) {
     if (summary.models.size() > 1 && !choice.model)
         made.notes.push_back(
             fmt::format("`{}`: {} models, the first is taken", made.file, summary.models.size()));
+    if (!summary.cut.empty())
+        made.notes.push_back(
+            fmt::format("`{}`: {}: the file may be cut, and atoms or chains lost; get it anew, or "
+                        "end it by END if it is whole",
+                        made.file, summary.cut));
     if (summary.blocks > 1)
         made.notes.push_back(fmt::format("`{}`: {} data blocks with atoms, the first is taken",
                                          made.file, summary.blocks));

@@ -40,12 +40,6 @@ struct ConstantForce : ForceTerm {
         sum = {Vec3::zero(), force_on(chain, k)};
         return true;
     }
-    static std::string why_host_alone(Scene const& scene) {
-        for (ChainSpec const& chain : scene.chains)
-            if (chain.is_beads() && count(scene, chain) > 0)
-                return "constant forces on beads are computed on the host";
-        return {};
-    }
 
     template <template <int> class F>
     struct Arrays {

@@ -4,11 +4,20 @@
 //
 // A path goes on with the child that has most bodies outboard of it; among equals with the one of
 // the smallest number. The other children are heads of paths of their own, side paths, which hang
-// on the body. The phase of a path is the number of side paths on the way to the chain's first
-// body. There are at most floor(log2(bodies)) + 1 phases.
+// on the body.
 //
-// Places number the bodies anew, path after path and phase after phase; within a phase, paths stand
-// in the order of the places on which they hang. All paths on one body are therefore consecutive.
+// Phases count from the tips. The phase of a body without side paths is 0, that of another one more
+// than the largest of its side paths, and that of a segment or path the largest of its bodies. The
+// work of a phase needs that of the phases before it. There are at most floor(log2(bodies)) + 1.
+//
+// The tree of a path is cut where the weights of both sides are nearest to each other, and inboard
+// among equals. A body counts a quarter of one of the next phase, so that what is ready late is
+// merged late and waits for little. Segments of one phase are merged in pairs as in ChainTree;
+// unbranched paths have that tree. Bodies of phases 0 and 1 form runs, others are leaves alone.
+//
+// Places number the bodies anew, path after path: first the paths of the chains' first bodies, then
+// all side paths on these, then the side paths on those. Within each of these sets, paths stand in
+// the order of the places on which they hang. All paths on one body are therefore consecutive.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +36,8 @@ struct Fork {
     CATENA_HD std::int64_t paths() const { return end_path - first_path; }
 };
 
-/// Work lists of the paths of one phase, as in Schedule.
+/// Work lists of one phase, as in Schedule. Merges may need segments of earlier phases, and later
+/// phases may need segments that are no roots.
 struct PhaseLists {
     std::vector<Run> runs;
     std::vector<std::vector<Merge>> levels;
@@ -37,9 +47,9 @@ struct PhaseLists {
 /// Counts of the paths of branched chains on all ranks.
 struct BranchCounts {
     std::int64_t paths = 0, runs = 0;
-    /// Largest number of phases, and of levels of merges on a path.
+    /// Largest number of phases, and of levels of merges in one of them.
     std::int64_t phases = 0, levels = 0;
-    /// Longest way from a body to a root, as Branches::depth().
+    /// Largest depth, as Branches::depth().
     std::int64_t depth = 0;
 };
 
@@ -54,10 +64,11 @@ struct Branches {
     std::vector<std::int64_t> body;
     /// First place of each path; [paths + 1].
     std::vector<std::int64_t> first_of_path;
-    /// First path of each phase; [phases + 1].
-    std::vector<std::int64_t> first_of_phase{0};
-    /// Bodies with side paths, in the order of their places, and the first fork of each phase;
-    /// [phases + 1]. The side paths of a phase's forks are those of the next phase.
+    /// First path of each generation: of the chains' first bodies, of the side paths on these, and
+    /// so on; [generations + 1].
+    std::vector<std::int64_t> first_of_generation{0};
+    /// Bodies with side paths, sorted by phase and place, and the first fork of each phase;
+    /// [phases + 1]. The side paths of a phase's forks are roots of phases before.
     std::vector<Fork> forks;
     std::vector<std::int64_t> first_fork_of_phase{0};
     /// Work lists of each phase. Joints have the numbers of places, `none` follows them.
@@ -67,10 +78,12 @@ struct Branches {
     /// Counts of all ranks, which those who know the ranks set.
     BranchCounts of_all_ranks;
 
+    /// First side path; the paths before it are those of the chains' first bodies.
+    std::int64_t first_side() const { return paths() == 0 ? 0 : first_of_generation[1]; }
     std::int64_t phases() const { return static_cast<std::int64_t>(lists.size()); }
     std::int64_t paths() const { return std::max<std::int64_t>(0, std::ssize(first_of_path) - 1); }
-    /// Steps of the longest way from a body to a root: merges and eliminations on the paths, and
-    /// the sums over side paths.
+    /// Steps of all phases, one after the other: eliminations in the longest run, levels of merges,
+    /// and the longest sum over side paths.
     std::int64_t depth() const { return depth_; }
     /// Counts of this rank.
     BranchCounts counts() const;

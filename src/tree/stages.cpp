@@ -33,6 +33,22 @@ std::vector<std::int64_t> slots_of(std::vector<Run> const& runs) {
     return slots;
 }
 
+/// True if merges need segments that are neither runs nor merged before.
+bool needs_others(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
+                  std::int64_t slots) {
+    std::vector<std::uint8_t> is_here(static_cast<std::size_t>(slots), 0);
+    auto const here = [&](std::int64_t slot) -> std::uint8_t& {
+        return is_here[static_cast<std::size_t>(slot)];
+    };
+    for (Run const& run : runs) here(run.slot) = 1;
+    for (std::vector<Merge> const& level : levels)
+        for (Merge const& m : level) {
+            if (!here(m.inboard) || !here(m.outboard)) return true;
+            here(m.slot) = 1;
+        }
+    return false;
+}
+
 /// Sorts the merges by block, then by level.
 void sort_by_block(Stage& s) {
     std::vector<StageMerge> sorted;
@@ -56,13 +72,26 @@ class Planner {
           roots_(roots),
           restricted_(restricted),
           root_of_(static_cast<std::size_t>(slots), -1),
-          seats_(static_cast<std::size_t>(slots)) {
+          seats_(static_cast<std::size_t>(slots)),
+          needs_others_(needs_others(runs, levels, slots)) {
         for (std::size_t i = 0; i < roots.size(); ++i)
             root_of_[static_cast<std::size_t>(roots[i].slot)] = static_cast<std::int64_t>(i);
     }
     /// Number of levels of merges.
     int end() const { return static_cast<int>(levels_.size()); }
 
+    /// Returns the runs and the segments of other trees that the levels before `end_level` need,
+    /// along the chains.
+    std::vector<std::int64_t> leaves(std::vector<Run> const& runs, int end_level) const {
+        std::vector<std::int64_t> items = slots_of(runs);
+        if (!needs_others_) return items;
+        std::vector<std::uint8_t> is_run(seats_.size(), 0);
+        for (std::int64_t const slot : items) is_run[static_cast<std::size_t>(slot)] = 1;
+        for (std::int64_t const slot : segments_.needed(0, end_level))
+            if (!is_run[static_cast<std::size_t>(slot)]) items.push_back(slot);
+        segments_.sort(items);
+        return items;
+    }
     /// Appends stages for all levels from `level` on, with up to `most` items per block. Larger
     /// sets are reduced by several levels, by up to `together` narrower blocks if these suffice.
     /// The last stage also loads segments of earlier stages that other ranks need. If one block has
@@ -237,6 +266,7 @@ class Planner {
     std::span<std::uint8_t const> restricted_;
     std::vector<std::int64_t> root_of_;  // index of the root that a slot closes; -1: none
     std::vector<Seat> seats_;            // indexed by slot
+    bool needs_others_ = false;          // needs_others()
 };
 
 /// Number of runs of a block with one thread for every part.
@@ -325,15 +355,14 @@ StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merg
                       std::span<std::uint8_t const> restricted, StageSizes const& sizes) {
     Planner planner(runs, levels, roots, slots, restricted);
     StagePlan plan;
-    plan.runs_apart = !runs.empty() &&
-                      (sizes.runs_apart || std::ssize(runs) > most_in_stage(planner.end(), sizes));
+    std::int64_t const leaves = std::ssize(planner.leaves(runs, planner.end()));
+    plan.runs_apart = !runs.empty() && (sizes.runs_apart || leaves > std::ssize(runs) ||
+                                        leaves > most_in_stage(planner.end(), sizes));
     int level = 0;
     if (!runs.empty()) {
-        std::int64_t const width =
-            width_of_runs(std::ssize(runs), plan.runs_apart, planner.end(), sizes);
-        level = std::ssize(runs) <= width ? planner.end()
-                                          : std::min(planner.end(), levels_above(width));
-        plan.stages.push_back(planner.stage(slots_of(runs), width, 0, level));
+        std::int64_t const width = width_of_runs(leaves, plan.runs_apart, planner.end(), sizes);
+        level = leaves <= width ? planner.end() : std::min(planner.end(), levels_above(width));
+        plan.stages.push_back(planner.stage(planner.leaves(runs, level), width, 0, level));
         plan.stages.back().of_runs = !plan.runs_apart;
     }
     planner.add_upper(level, sizes.most, sizes.together, plan.stages);

@@ -89,7 +89,8 @@ struct PlacesAbove {
 struct StagePlan {
     std::vector<Stage> stages;  // order: from the leaves upwards
     /// True if a separate launch processes the runs before all stages, which then load the runs'
-    /// segments from their slots.
+    /// segments from their slots. It is true if merges need segments of other trees besides, which
+    /// in turn need the forces next to runs.
     bool runs_apart = false;
 };
 

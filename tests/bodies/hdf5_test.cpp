@@ -104,6 +104,24 @@ TEST_F(Hdf5Bodies, cylindrical_and_planar3_are_those_of_the_list) {
                              "give a direction in the plane, then its normal");
 }
 
+TEST_F(Hdf5Bodies, hang_on_the_bodies_of_the_list) {
+    data_["parent"] = {{3}, {0, 1, 1}};
+    EXPECT_EQ(parse_scene(write(), "s.yaml").chains[0].parent,
+              (std::vector<std::int64_t>{-1, 0, 0}));
+    data_["parent"].second[2] = 2;
+    EXPECT_FALSE(parse_scene(write(), "s.yaml").chains[0].is_branched());
+    for (double const wrong : {3.0, 0.0, 1.5, -1.0, 1e30}) {
+        data_["parent"].second[2] = wrong;
+        std::string const message = refusal();
+        EXPECT_NE(message.find(at("parent", 3) + "give the number of an earlier body, 1 to 2"),
+                  std::string::npos)
+            << message;
+    }
+    data_["parent"].second = {1, 1, 1};
+    EXPECT_EQ(refusal(),
+              "body 1 hangs on body 1" + at("parent", 1) + "give 0: body 1 hangs on none");
+}
+
 TEST_F(Hdf5Bodies, types_by_number_and_defaults) {
     type_numbers_ = {0, 3, 5};
     base_ = "free";

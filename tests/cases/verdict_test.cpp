@@ -63,6 +63,7 @@ TEST_F(CutRun, HasTheVerdictOfTheWhole) {
 TEST_F(CutRun, HasItOnTwoRanks) {
     Ended const whole = this->whole();
     catena_on(2, part(300), folder_.path());
+    catena(part(2700), folder_.path());
     Ended const last = catena_on(2, part(3000), folder_.path());
     EXPECT_NE(last.err.find("energy at step 3000"), std::string::npos) << last.err;
     EXPECT_EQ(summary_in(folder_ / "parts").at("verdict"),

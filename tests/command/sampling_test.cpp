@@ -57,6 +57,20 @@ TEST(Sampling, AlphaSynucleinIsSampledByEveryMethod) {
     EXPECT_TRUE(json.at("hardware").contains("processor"));
 }
 
+// Copies that never meet have no box, and therefore no places in it.
+TEST(Sampling, PlacesOfASceneAndOfItsChainAreLeftOut) {
+    TemporaryFolder const folder;
+    for (std::string const place : {"place", "chains[0].place"}) {
+        Ended const e = catena(
+            sampling(write_scene(folder),
+                     {"--set", "box.periodic=[12, 12, 30]", "--set", place + ".slab.thickness=10",
+                      "--copies", "2", "--duration", "1", "--discard", "0", "--equilibrate", "0",
+                      "--methods", "rigid", "--json", folder / "s.json"}));
+        EXPECT_EQ(e.status, 0) << place << e.err;
+        EXPECT_EQ(Json::parse(std::ifstream(folder / "s.json")).at("results").size(), 1U) << place;
+    }
+}
+
 TEST(Sampling, NotesOnTheSceneAreShown) {
     TemporaryFolder const folder;
     Ended const e = catena(sampling(

@@ -8,6 +8,7 @@
 #include "integrate/stepper.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/support/gpu.hpp"
+#include "tests/support/pulled.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/same_bits.hpp"
 
@@ -110,6 +111,11 @@ Scene brush_of_beads() {
     return scene_from(
         "chains: [{name: b, generator: {brush: {backbone: 2000, side_length: 5, length: 0.4}}}]");
 }
+/// By teams, by blocks, over several blocks, on the ground, and on paths.
+Scene pulled_beads() { return pulled(many_beads()); }
+Scene pulled_longest() { return pulled(longest_beads()); }
+Scene pulled_longer() { return pulled(longer_beads()); }
+Scene pulled_branched() { return pulled(branched_beads()); }
 Scene hanging_beads() { return scene_from(sizes_of("joint: link", "fixed")); }
 Scene free_bodies() { return scene_from(sizes_of("joint: spherical", "free")); }
 Scene hanging_bodies() { return scene_from(sizes_of("joint: spherical", "fixed")); }
@@ -239,6 +245,11 @@ INSTANTIATE_TEST_SUITE_P(
         AbsoluteScene{"branched_beads", branched_beads},
         AbsoluteScene{"brush_of_beads", brush_of_beads}, AbsoluteScene{"many_beads", many_beads},
         AbsoluteScene{"longest_beads", longest_beads}, AbsoluteScene{"longer_beads", longer_beads},
+        AbsoluteScene{"pulled_beads", pulled_beads},
+        AbsoluteScene{"pulled_longest", pulled_longest},
+        AbsoluteScene{"pulled_longest_full", pulled_longest, Handles::full},
+        AbsoluteScene{"pulled_longer", pulled_longer},
+        AbsoluteScene{"pulled_branched", pulled_branched},
         AbsoluteScene{"free_bodies", free_bodies},
         AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
         AbsoluteScene{"held_bodies", held_bodies},
@@ -316,8 +327,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         AbsoluteScene{"free_beads", free_beads}, AbsoluteScene{"branched_beads", branched_beads},
         AbsoluteScene{"brush_of_beads", brush_of_beads}, AbsoluteScene{"many_beads", many_beads},
-        AbsoluteScene{"longest_beads", longest_beads}, AbsoluteScene{"free_bodies", free_bodies},
-        AbsoluteScene{"hanging_bodies", hanging_bodies},
+        AbsoluteScene{"longest_beads", longest_beads}, AbsoluteScene{"pulled_beads", pulled_beads},
+        AbsoluteScene{"pulled_longest", pulled_longest},
+        AbsoluteScene{"pulled_longer", pulled_longer},
+        AbsoluteScene{"pulled_branched", pulled_branched},
+        AbsoluteScene{"free_bodies", free_bodies}, AbsoluteScene{"hanging_bodies", hanging_bodies},
         AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
         AbsoluteScene{"held_bodies", held_bodies},
         AbsoluteScene{"carrying_bodies", carrying_bodies},

@@ -6,6 +6,7 @@
 #include "math/simd_level.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/mpi/world.hpp"
+#include "tests/support/pulled.hpp"
 #include "tests/support/same_bits.hpp"
 
 namespace catena::test {
@@ -14,6 +15,7 @@ namespace {
 struct Case {
     char const* name;
     char const* chains;
+    bool is_pulled = false;
 };
 Case const cases[] = {
     {"free_beads",
@@ -31,6 +33,8 @@ Case const cases[] = {
      "{count: 5, velocities: thermal, generator: {freely_jointed: {beads: 23, length: 0.38}}}, "
      "{velocities: thermal, generator: "
      "{freely_jointed: {beads: 129, length: 0.38}}}"},
+    {"pulled_beads",
+     "{velocities: thermal, generator: {freely_jointed: {beads: 333, length: 0.38}}}", true},
     {"free_bodies",
      "{base: free, velocities: thermal, generator: {random: {bodies: 301, joint: spherical, seed: "
      "1}}}"},
@@ -52,7 +56,7 @@ class AtOnce : public ::testing::TestWithParam<Case> {
                                   "rattle, step: 0.002, temperature: 300, seed: 5}",
                               "scene.yaml");
         s.solver.backend = backend;
-        return s;
+        return GetParam().is_pulled ? pulled(std::move(s)) : s;
     }
 };
 

@@ -6,6 +6,7 @@
 #include "mpi/communicator.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/dynamics/same_steps.hpp"
+#include "tests/support/pulled.hpp"
 
 namespace catena::test {
 namespace {
@@ -14,7 +15,7 @@ struct Case {
     char const* name;
     char const* chains;
     Handles handles = Handles::projected;
-    bool pairwise = false;
+    bool pairwise = false, pulled = false;
 };
 char const* const mixture =
     "{base: fixed, generator: {random: {bodies: 70, joint: link, seed: 3}}},"
@@ -26,7 +27,8 @@ char const* const mixture =
     "joint: link, seed: 6}}}";
 Case const cases[] = {{"mixture", mixture},
                       {"full_handles", mixture, Handles::full},
-                      {"pairs", mixture, Handles::projected, true}};
+                      {"pairs", mixture, Handles::projected, true},
+                      {"pulled", mixture, Handles::projected, false, true}};
 
 class StepByBlocks : public ::testing::TestWithParam<std::tuple<Case, bool, int>> {
   protected:
@@ -37,6 +39,7 @@ class StepByBlocks : public ::testing::TestWithParam<std::tuple<Case, bool, int>
         scene_ = parse_scene(
             std::string("chains: [") + c.chains + "]\nforces: {gravity: [0.5, 0, -9.81]}",
             "scene.yaml");
+        if (c.pulled) scene_ = pulled(std::move(scene_));
         groups_ = make_groups(scene_, Axes::world, c.handles, c.pairwise, *communicator_);
         alone_ = dynamics();
         together_ = dynamics();

@@ -14,6 +14,7 @@
 #include "mpi/communicator.hpp"
 #include "reader/load_scene.hpp"
 #include "tests/dynamics/same_steps.hpp"
+#include "tests/support/pulled.hpp"
 
 namespace catena::test {
 namespace {
@@ -137,8 +138,13 @@ char const* const chains =
     "{base: free, generator: {random: {bodies: 140, joint: link, seed: 7}}},"
     "{base: fixed, generator: {random: {bodies: 17, joint: link, seed: 8}}}";
 
-class StepByParts : public ::testing::TestWithParam<bool> {
+/// Whether steps are Langevin steps, and whether beads are pulled.
+class StepByParts : public ::testing::TestWithParam<std::tuple<bool, bool>> {
   protected:
+    StepByParts() {
+        if (std::get<1>(GetParam())) scene_ = pulled(std::move(scene_));
+        groups_ = make_groups(scene_, Axes::world, Handles::projected, false, *communicator_);
+    }
     template <class Space>
     std::unique_ptr<AbsoluteDynamics> dynamics() const {
         Space const space(*executor_);
@@ -155,16 +161,18 @@ class StepByParts : public ::testing::TestWithParam<bool> {
     std::unique_ptr<Executor> executor_ = serial_executor();
     Scene scene_ = parse_scene(
         std::string("chains: [") + chains + "]\nforces: {gravity: [0.5, 0, -9.81]}", "scene.yaml");
-    std::vector<std::unique_ptr<ChainGroup>> groups_ =
-        make_groups(scene_, Axes::world, Handles::projected, false, *communicator_);
+    std::vector<std::unique_ptr<ChainGroup>> groups_;
 };
 
 TEST_P(StepByParts, LeavesTheSameBits) {
-    expect_same_steps(*dynamics<TeamSpace>(), *dynamics<HostSpace>(), GetParam(), 3);
+    expect_same_steps(*dynamics<TeamSpace>(), *dynamics<HostSpace>(), std::get<0>(GetParam()), 3);
 }
-INSTANTIATE_TEST_SUITE_P(Steps, StepByParts, ::testing::Bool(), [](auto const& each) {
-    return std::string(each.param ? "langevin" : "rattle");
-});
+INSTANTIATE_TEST_SUITE_P(Steps, StepByParts,
+                         ::testing::Combine(::testing::Bool(), ::testing::Bool()),
+                         [](auto const& each) {
+                             return std::string(std::get<0>(each.param) ? "langevin" : "rattle") +
+                                    (std::get<1>(each.param) ? "_pulled" : "");
+                         });
 
 }  // namespace
 }  // namespace catena::test

@@ -10,6 +10,23 @@ struct RunScene {
     std::string text;
 };
 
+/// Bodies of a zigzag of beads on links whose ends are pulled apart; every tenth bead is pulled
+/// aside.
+inline std::string pulled_zigzag(int beads) {
+    std::string bodies;
+    for (int k = 0; k < beads; ++k) {
+        std::string const x = std::to_string(0.3 * k), y = k % 2 == 0 ? "0" : "0.25";
+        bodies += (k > 0 ? ", {mass: 1, position: [" : "{mass: 1, position: [") + x + ", " + y +
+                  ", 0]" + (k > 0 ? ", joint: {type: link}" : "") +
+                  (k == 0           ? ", force: [-4, 0.5, 0]"
+                   : k == beads - 1 ? ", force: [4, 0, 0.5]"
+                   : k % 10 == 0    ? ", force: [0, 1, -0.25]"
+                                    : "") +
+                  "}";
+    }
+    return "bodies: [" + bodies + "]";
+}
+
 inline RunScene const run_scenes[] = {
     {"rattle_beads",
      "chains: [{name: a, velocities: thermal, generator: {freely_jointed: {beads: 150, length: "
@@ -86,9 +103,18 @@ inline RunScene const run_scenes[] = {
     {"pulled",
      "chains: [{name: a, bodies: [{mass: 1, position: [0, 0, 0], force: [-1, 0, 0]}, {mass: 1, "
      "position: [1, 0.5, 0], joint: {type: link}}, {mass: 1, position: [2, 0, 0], joint: {type: "
-     "link}, force: [1, 0, 0]}]}]\n"
-     "dynamics: {integrator: rattle, step: 0.001, steps: 20}\noutput: {every: 5, "
-     "checkpoint_every: 10}\n"},
+     "link}, force: [1, 0, 0]}]}, {name: b, " +
+         pulled_zigzag(130) +
+         "}]\n"
+         "dynamics: {integrator: rattle, step: 0.001, steps: 20}\noutput: {every: 5, "
+         "checkpoint_every: 10}\n"},
+    {"pulled_branched",
+     "chains: [{name: a, count: 3, bodies: [{mass: 1, position: [0, 0, 0], force: [-1, 0, 0]}, "
+     "{mass: 1, position: [1, 0.5, 0], joint: {type: link}}, {mass: 1, position: [2, 0, 0], joint: "
+     "{type: link}, force: [1, 0, 0]}, {mass: 1, position: [1, 1, 1], joint: {type: link}, parent: "
+     "2, force: [0, 1, 2]}]}]\n"
+     "dynamics: {integrator: g-baoab, step: 0.001, steps: 20, friction: 1, temperature: 300, seed: "
+     "5}\noutput: {every: 5, checkpoint_every: 10}\n"},
     {"rk4_spherical",
      "chains: [{name: a, base: free, generator: {random: {bodies: 60, joint: spherical, seed: "
      "1}}}]\n"

@@ -14,6 +14,12 @@ Refusal const beads_cases[] = {
     {"unknown_model", "chains: [{sequence: GAS, model: calvado2}]",
      "`calvado2` is not a value of `model` (s.yaml: chains[0].model, line 1): did you mean "
      "`calvados2`?"},
+    {"model_in_capitals", "chains: [{sequence: GAS, model: CALVADOS2}]",
+     "`CALVADOS2` is not a value of `model` (s.yaml: chains[0].model, line 1): did you mean "
+     "`calvados2`?"},
+    {"model_in_words", "chains: [{sequence: GAS, model: Calvados_3}]",
+     "`Calvados_3` is not a value of `model` (s.yaml: chains[0].model, line 1): did you mean "
+     "`calvados3`?"},
     {"sequence_list", "chains: [{sequence: [G], model: calvados2}]",
      "a list is not a text (s.yaml: chains[0].sequence, line 1): give a text"},
     {"si_units", R"y(units: si

@@ -89,6 +89,26 @@ TEST(Branches, PositionsOfAFileReplaceTheGrowth) {
     EXPECT_NE(refusal_of(brush).find("NONE.csv"), std::string::npos);
 }
 
+// A trunk of two bodies with an arm on each; `keys` are further keys of the chain, `last` those of
+// the last body.
+#define BODY "{mass: 1, inertia: [1, 1, 1], joint: {type: "
+#define TREE(keys, last)                                                                  \
+    "chains: [{base: fixed, " keys "bodies: [" BODY "revolute, axis: [0, 0, 1]}}, " BODY  \
+    "spherical, translation: [1, 0, 0]}}, " BODY                                          \
+    "universal, axes: [[1, 0, 0], [0, 1, 0]], translation: [0, 1, 0]}, parent: 1}, " BODY \
+    "prismatic, axis: [0, 0, 1]}, " last "}]}]\n"
+
+TEST(Branches, BodiesHangOnEarlierOnes) {
+    Scene const scene = parse_scene(TREE("", "parent: 2"), "s.yaml");
+    ChainSpec const& chain = scene.chains.at(0);
+    EXPECT_EQ(chain.parent, (Inboard{-1, 0, 0, 1}));
+    EXPECT_EQ(scene::degrees_of_freedom(chain), 7);
+    EXPECT_EQ(scene::height_of(chain), 2);
+    EXPECT_EQ(scene.solver.handles, Handles::articulated);
+    EXPECT_NE(parse_scene(TREE("", "parent: 2"), "s.yaml").hash,
+              parse_scene(TREE("", "parent: 3"), "s.yaml").hash);
+}
+
 class BranchesRefused : public Refused {};
 TEST_P(BranchesRefused, InOneLine) {
     std::string const message = refusal_of(GetParam().yaml);
@@ -142,12 +162,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"rigid",
                 "chains: [{bodies: [{mass: 1, inertia: [1, 1, 1], position: [0, 0, 0]}, {mass: 1, "
                 "position: [2, 0, 0], parent: 1, joint: {type: link}}]}]",
-                "leave `parent` out: branched chains consist of point beads on links"},
-        Refusal{"joints",
-                "chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: "
-                "revolute, axis: [0, 0, 1]}}, {mass: 1, inertia: [1, 1, 1], parent: 1, joint: "
-                "{type: revolute, axis: [0, 0, 1]}}]}]",
-                "leave `parent` out: branched chains consist of point beads on links"},
+                "a branched chain that has rigid bodies on links"},
         Refusal{"ends",
                 "chains: [{generator: {star: {arms: 3, arm_length: 2, length: 1}}}]\n"
                 "output: {observables: [energy, end_to_end_distance]}",
@@ -173,6 +188,33 @@ INSTANTIATE_TEST_SUITE_P(
                 "chains: [{conformation: extended, generator: {brush: {backbone: 4, side_length: "
                 "2, length: 1}}}]",
                 "key `conformation` does not apply to generator `brush`"}),
+    name_of_case);
+
+#define RUN "dynamics: {step: 0.001, steps: 1, integrator: "
+INSTANTIATE_TEST_SUITE_P(
+    Bodies, BranchesRefused,
+    testing::Values(
+        Refusal{"later_body", TREE("", "parent: 4"), "body 4 hangs on itself"},
+        Refusal{"missing_body", TREE("", "parent: 9"),
+                "body 4 hangs on body 9 of 4 (s.yaml: chains[0].bodies[3].parent, body 4, line 1): "
+                "count the bodies of this chain from 1"},
+        Refusal{"second_root_of_bodies", TREE("", "parent: 0"), "two trees"},
+        Refusal{"full_handles", TREE("", "parent: 2") "solver: {handles: full}",
+                "full handles for chain `chain-1`, a branched chain of rigid bodies"},
+        Refusal{"projected_handles", TREE("", "parent: 2") "solver: {handles: projected}",
+                "projected handles for branched chains of rigid bodies"},
+        Refusal{"rattle", TREE("", "parent: 2") RUN "rattle}",
+                "integrator rattle moves no branched chains of rigid bodies"},
+        Refusal{"implicit", TREE("", "parent: 2") RUN "staggered}",
+                "not in this version: implicit springs and dampers of branched chains"},
+        Refusal{"planar",
+                "chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: "
+                "planar, axis: [0, 0, 1]}}, {mass: 1, inertia: [1, 1, 1], joint: {type: planar, "
+                "axis: [0, 0, 1]}}, {mass: 1, inertia: [1, 1, 1], parent: 1, joint: {type: planar, "
+                "axis: [0, 0, 1]}}]}]",
+                "not in this version: planar joints of a branched chain"},
+        Refusal{"thermal", TREE("velocities: thermal, ", "parent: 2") RUN "rk4, temperature: 300}",
+                "thermal velocities for a branched chain of rigid bodies"}),
     name_of_case);
 
 }  // namespace

@@ -159,8 +159,10 @@ TEST_F(SceneFiles, NucleotidesReadAsAProteinAreNoted) {
     write("a.fasta", ">a\nAAAAAAAAAA\n");
     EXPECT_EQ(read("chains: [{fasta: a.fasta, model: calvados2}]").notes,
               std::vector<std::string>{"`chains[0].fasta` has the letter A" + way});
-    for (char const* const protein :
-         {"ACGTACG", "AAAAAAA", "GAGAGAGAGAGAGAGAGAGA", "GGGGGGGGGG", "ACGTACGK"})
+    EXPECT_EQ(notes("CCCC"),
+              std::vector<std::string>{"`chains[0].sequence` has the letter C" + way});
+    EXPECT_EQ(notes("gcgc").back(), "`chains[0].sequence` has the letters C and G" + way);
+    for (char const* const protein : {"ACG", "AAA", "GSGSGSGS", "ACGTACGK"})
         EXPECT_EQ(notes(protein), std::vector<std::string>{}) << protein;
     write("own.csv",
           "one,three,MW,lambdas,sigmas,q,bondlength\nA,AAA,70,0,0.5,0,0.4\n"

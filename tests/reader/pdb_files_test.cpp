@@ -178,9 +178,9 @@ TEST_F(SceneFiles, rigid_domains_of_a_sequence_are_counted_from_one) {
     Scene const s =
         read("chains: [{sequence: GGGG, model: calvados2, positions: a.pdb, rigid: [[1, 3]]}]");
     EXPECT_EQ(s.chains.at(0).linked.size(), 2u);
-    EXPECT_EQ(notes_of(s),
-              std::vector<std::string>{"`rigid` counts the residues of the sequence from 1, not by "
-                                       "their numbers in `a.pdb` (10 to 13)"});
+    EXPECT_EQ(notes_of(s).back(),
+              "`rigid` counts the residues of the sequence from 1, not by their numbers in `a.pdb` "
+              "(10 to 13)");
 }
 
 TEST_F(SceneFiles, positions_and_conformation_from_a_pdb_file) {
@@ -308,6 +308,30 @@ TEST_F(SceneFiles, residues_that_seqres_lists_and_the_file_lacks) {
     EXPECT_EQ(notes_of(read(with_pdb_)),
               std::vector<std::string>{"`a.pdb`: the chain's sequence has 4 residues, but only 2 "
                                        "have positions and become beads"});
+}
+
+TEST_F(SceneFiles, pdb_files_that_may_be_cut_are_noted) {
+    std::string const begin = atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "ALA", 'A', 2, 3.8),
+                      last = atom(3, "CA", "SER", 'A', 3, 7.6);
+    auto const notes = [&](std::string const& text) {
+        write("a.pdb", text);
+        return notes_of(read(with_pdb_));
+    };
+    auto const noted = [](std::string const& sign) {
+        return std::vector<std::string>{"`a.pdb`: " + sign +
+                                        ": the file may be cut, and atoms or chains lost; get it "
+                                        "anew, or end it by END if it is whole"};
+    };
+    auto const columns = std::to_string(begin.find('\n'));
+    EXPECT_EQ(
+        notes(begin + last.substr(0, 54)),
+        noted("the last line is an atom's of 54 columns, all others have " + columns + " or more"));
+    EXPECT_EQ(notes(begin + "AT"), noted("the last line is `AT`, the beginning of ATOM"));
+    EXPECT_EQ(notes("MODEL        1\n" + begin), noted("the last model has no ENDMDL"));
+    for (std::string const& whole :
+         {begin + last, begin + last.substr(0, 54) + "\nEND\n", begin + "TER",
+          "MODEL        1\n" + begin + "ENDMDL\n", "MODEL        1\n" + begin + "END"})
+        EXPECT_TRUE(notes(whole).empty()) << whole;
 }
 
 TEST_F(SceneFiles, gaps_of_a_pdb_file) {

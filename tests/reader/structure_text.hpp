@@ -53,6 +53,7 @@ inline std::string pdb_text(std::vector<AtomLine> const& atoms) {
             a.insertion, a.x, a.y, a.z, a.occupancy, a.b_factor, a.element);
         if (a.ends_chain) text += "TER\n";
     }
+    if (models) text += "ENDMDL\n";
     return text;
 }
 

@@ -17,6 +17,7 @@
 #include "run/simulation.hpp"
 #include "tests/integrate/scenes.hpp"
 #include "tests/io/dataset_bits.hpp"
+#include "tests/io/small_disk.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/run/no_more_threads.hpp"
 
@@ -183,6 +184,38 @@ TEST_P(Restart, RefusesAnExistingFolder) {
         std::filesystem::remove(newest);
     }
     EXPECT_EQ(message_of([&] { run("parts", 5); }).find("--restart"), std::string::npos);
+}
+
+/// A chain with many frames, whose run fills a small disk.
+std::string message_of_full_disk(std::string const& output, std::string const& more) {
+    Scene const scene = parse_scene(
+        "chains: [{base: free, generator: {freely_jointed: {beads: 60, length: 0.38}}}]\n"
+        "dynamics: {integrator: rattle, step: 0.001, steps: 5000}\noutput: {every: 1" +
+            more + "}\n",
+        "scene.yaml");
+    RunOptions options;
+    options.output = output;
+    options.quiet = true;
+    return message_of([&] { run_simulation(scene, *serial_communicator(), options); });
+}
+
+TEST(FullDisk, SaysWhatIsKeptAndHowToGoOn) {
+    SmallDisk const disk;
+    NEEDS_SMALL_DISK(disk);
+    std::string const first = message_of_full_disk(disk / "a", "");
+    EXPECT_TRUE(first.ends_with(
+        "No space left on device: no checkpoint was written yet; correct this and run it again "
+        "with --overwrite"))
+        << first;
+    std::filesystem::remove_all(disk / "a");
+    SmallDisk const larger(1500);
+    std::string const later = message_of_full_disk(larger / "b", ", checkpoint_every: 10");
+    EXPECT_TRUE(later.ends_with(
+        "No space left on device: the last checkpoint and the frames up to it are whole; correct "
+        "this and continue with --restart " +
+        (larger / "b/checkpoint.h5")))
+        << later;
+    EXPECT_GT(read_checkpoint(larger / "b/checkpoint.h5").step, 0);
 }
 
 /// Runs of a star of 3 arms on a checkpoint of another scene.

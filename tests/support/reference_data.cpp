@@ -19,8 +19,10 @@ Json read(std::string const& name) {
 Vec3 vector3(Json const& v) {
     return {{v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()}};
 }
-/// A revolute joint's number as {x, 0, 0}, a spherical joint's three as they are.
+/// A revolute joint's number as {x, 0, 0}, a spherical joint's three as they are, and those of a
+/// free body's rotation.
 Vec3 joint_value(Json const& v) {
+    if (v.is_object()) return vector3(v.contains("alpha") ? v.at("alpha") : v.at("omega"));
     return v.is_number() ? Vec3{{v.get<double>(), 0, 0}} : vector3(v);
 }
 std::vector<Vec3> vectors(Json const& list) {
@@ -41,12 +43,21 @@ Sym3 symmetric3(Json const& rows) {
     return {{m(0, 0), m(1, 0), m(1, 1), m(2, 0), m(2, 1), m(2, 2)}};
 }
 
-void append_body(BodyArrays& bodies, Json const& body) {
-    Json const &joint = body.at("joint"), &wrench = body.at("wrench");
+/// Appends the state of body 1 of a free base.
+void append_free(BodyArrays& bodies, Json const& body) {
+    bodies.joint.push_back(JointType::free);
+    bodies.axis.push_back({{0, 0, 1}});
+    bodies.rotation.push_back(Mat3::identity());
+    bodies.translation.push_back(Vec3::zero());
+    bodies.q.push_back(body.at("q").at("quaternion").get<std::array<double, 4>>());
+    bodies.torque.push_back(Vec3::zero());
+    bodies.free_base.position = vector3(body.at("q").at("position"));
+    bodies.free_base.velocity = vector3(body.at("qd").at("velocity"));
+}
+
+void append_joint(BodyArrays& bodies, Json const& body) {
+    Json const& joint = body.at("joint");
     bool const revolute = joint.at("type") == "revolute";
-    bodies.mass.push_back(body.at("mass"));
-    bodies.com.push_back(vector3(body.at("com")));
-    bodies.inertia.push_back(symmetric3(body.at("inertia")));
     bodies.joint.push_back(revolute ? JointType::revolute : JointType::spherical);
     bodies.axis.push_back(revolute ? vector3(joint.at("axis")) : Vec3{{0, 0, 1}});
     bodies.rotation.push_back(matrix3(joint.at("parent_pose").at("rotation")));
@@ -55,8 +66,16 @@ void append_body(BodyArrays& bodies, Json const& body) {
         bodies.q.push_back({body.at("q").get<double>(), 0, 0, 0});
     else
         bodies.q.push_back(body.at("q").get<std::array<double, 4>>());
-    bodies.qd.push_back(joint_value(body.at("qd")));
     bodies.torque.push_back(joint_value(body.at("tau")));
+}
+
+void append_body(BodyArrays& bodies, Json const& body) {
+    Json const& wrench = body.at("wrench");
+    bodies.mass.push_back(body.at("mass"));
+    bodies.com.push_back(vector3(body.at("com")));
+    bodies.inertia.push_back(symmetric3(body.at("inertia")));
+    body.at("joint").at("type") == "free" ? append_free(bodies, body) : append_joint(bodies, body);
+    bodies.qd.push_back(joint_value(body.at("qd")));
     bodies.wrench.push_back(
         {vector3(wrench),
          {{wrench.at(3).get<double>(), wrench.at(4).get<double>(), wrench.at(5).get<double>()}}});
@@ -81,6 +100,18 @@ ReferenceChain pinocchio(std::string const& file) {
     for (auto const& [key, value] : json.at("agreement").items())
         if (value.is_number()) r.agreement[key] = value.get<double>();
     r.condition = r.agreement.at("condition_number_of_joint_space_inertia");
+    return r;
+}
+
+ReferenceChain tree(std::string const& file) {
+    ReferenceChain r = pinocchio(file);
+    Json const json = read(file);
+    Json const &expected = json.at("expected"), &first = expected.at("qdd").at(0);
+    for (Json const& body : json.at("bodies"))
+        r.chain.parent.push_back(body.at("parent").get<std::int64_t>() - 1);
+    if (first.is_object()) r.base_acceleration = vector3(first.at("acceleration"));
+    r.joint_wrench = expected.at("joint_wrench_on_outboard_body_world")
+                         .get<std::vector<std::array<double, 6>>>();
     return r;
 }
 
@@ -137,6 +168,12 @@ ReferenceChain const& reference_chain(std::string const& name) {
     for (ReferenceChain const& r : reference_chains())
         if (r.name == name) return r;
     throw std::runtime_error("no reference chain is called " + name);
+}
+
+std::vector<ReferenceChain> const& reference_trees() {
+    static std::vector<ReferenceChain> const all{tree("pinocchio-tree12.json"),
+                                                 tree("pinocchio-tree60free.json")};
+    return all;
 }
 
 }  // namespace catena::test

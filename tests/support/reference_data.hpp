@@ -2,6 +2,7 @@
 // expected of them.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,7 +19,9 @@ struct ReferenceChain {
                        // "rods-32 moving"
     ChainSpec chain;
     Vec3 gravity = Vec3::zero();  // W
-    std::vector<Vec3> qdd;        // as in the contract: revolute {q'', 0, 0}; spherical: B
+    std::vector<Vec3> qdd;        // as in the contract: revolute {q'', 0, 0}; spherical, free: B
+    Vec3 base_acceleration = Vec3::zero();            // of the origin of a free body 1, W
+    std::vector<std::array<double, 6>> joint_wrench;  // trees: torque, force on the body, W
     std::vector<Vec3> com_position, com_velocity, omega, com_acceleration, alpha;  // W
     std::vector<Vec3> pin_force;  // rods: whole force on the rod at its inboard pin, W
     std::vector<std::string> qdd_digits,
@@ -32,6 +35,9 @@ struct ReferenceChain {
     /// chain50.
     std::map<std::string, double> agreement;
 };
+
+/// Branched chains of rigid bodies, "tree12" and "tree60free". Throws as reference_chains().
+std::vector<ReferenceChain> const& reference_trees();
 
 /// The six chains above. Throws std::runtime_error naming the file when one cannot be read.
 std::vector<ReferenceChain> const& reference_chains();

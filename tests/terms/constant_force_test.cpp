@@ -113,20 +113,35 @@ TEST(ConstantForce, KeepsItsEnergyInAColumn) {
     }
 }
 
-TEST(ConstantForce, OnBeadsIsForTheHost) {
-    std::string const why = "constant forces on beads are computed on the host";
-    EXPECT_EQ(terms::why_host_alone(parse_scene(beads, "s.yaml")), why);
-    EXPECT_EQ(terms::why_host_alone(parse_scene(linked, "s.yaml")), "");
-    EXPECT_EQ(terms::why_host_alone(parse_scene(bodies("spherical"), "s.yaml")), "");
+/// tests/cuda compares the bits.
+TEST(ConstantForce, RunsOnGpus) {
+    for (std::string const& text : {beads, branched, linked, bodies("spherical")})
+        EXPECT_EQ(terms::why_host_alone(parse_scene(text, "s.yaml")), "") << text;
+}
+
+/// The forces of a bead that is not pulled, and of a scene without pulls, are as without the term.
+TEST(ConstantForce, LeavesOtherBeadsAlone) {
     auto const communicator = serial_communicator();
-    Scene scene = parse_scene(beads, "s.yaml");
-    scene.solver.backend = Backend::cuda;
-    try {
-        ChainSystem(scene, Axes::world, *communicator);
-        FAIL() << "accepted";
-    } catch (InputError const& refused) {
-        EXPECT_EQ(std::string(refused.what()).find(why), 0u) << refused.what();
-    }
+    std::string const pull = ", force: [1, -2, 0.5]";
+    std::string zero = beads, gravity = "forces: {gravity: [0.3, -1, 0.1]}\n";
+    zero.replace(zero.find(pull), pull.size(), ", force: [0, 0, 0]");
+    auto const forces = [&](std::string const& text) {
+        Scene const scene = parse_scene(text, "s.yaml");
+        ChainSystem system(scene, Axes::world, *communicator);
+        system.evaluate();
+        View<3> const force = system.absolute().at(0)->bead_forces();
+        std::vector<Vec3> all;
+        for (std::int64_t k = 0; k < force.size; ++k) all.push_back(force.load(k));
+        return all;
+    };
+    std::vector<Vec3> const all = forces(beads + gravity), one = forces(zero + gravity);
+    ASSERT_EQ(all.size(), 3u);
+    Vec3 const g{{0.3, -1, 0.1}};
+    EXPECT_EQ(norm(all[0] - (2.0 * g + (Vec3{{1, -2, 0.5}}))), 0);
+    EXPECT_EQ(norm(all[1] - g), 0);
+    EXPECT_EQ(norm(all[2] - (3.0 * g + (Vec3{{0, 4, -1}}))), 0);
+    EXPECT_EQ(norm(one[0] - 2.0 * g), 0);
+    EXPECT_EQ(norm(one[2] - all[2]), 0);
 }
 
 TEST(ConstantForce, WantsThreeNumbers) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <numeric>
 
@@ -68,23 +69,59 @@ TEST_P(Paths, HoldEveryBodyOnceAndFollowTheLargestChild) {
         }
 }
 
-TEST_P(Paths, HangOnBodiesOfThePhaseBefore) {
+TEST_P(Paths, HangOnBodiesOfLaterPhases) {
     Branches const b(GetParam(), false);
-    std::int64_t next = b.first_of_phase.size() > 1 ? b.first_of_phase[1] : 0;
-    for (std::int64_t phase = 0; phase < b.phases(); ++phase) {
+    std::vector<std::int64_t> phase_of_root(b.paths(), -1), forks(b.paths(), 0);
+    for (std::int64_t phase = 0; phase < b.phases(); ++phase)
+        for (Root const& root : b.lists[phase].roots) {
+            EXPECT_EQ(root.first, b.first_of_path[root.chain]);
+            phase_of_root[root.chain] = phase;
+        }
+    for (std::int64_t phase = 0; phase < b.phases(); ++phase)
         for (std::int64_t f = b.first_fork_of_phase[phase]; f < b.first_fork_of_phase[phase + 1];
              ++f) {
             Fork const& fork = b.forks[f];
-            EXPECT_GE(fork.place, b.first_of_path[b.first_of_phase[phase]]);
-            EXPECT_LT(fork.place, b.first_of_path[b.first_of_phase[phase + 1]]);
-            ASSERT_EQ(fork.first_path, next);  // every side path hangs on one body
             ASSERT_GT(fork.paths(), 0);
-            for (next = fork.first_path; next < fork.end_path; ++next)
-                EXPECT_EQ(GetParam()[b.body[b.first_of_path[next]]], b.body[fork.place]);
+            std::int64_t last = -1;
+            for (std::int64_t path = fork.first_path; path < fork.end_path; ++path) {
+                EXPECT_EQ(GetParam()[b.body[b.first_of_path[path]]], b.body[fork.place]);
+                last = std::max(last, phase_of_root[path]);
+                ++forks[path];
+            }
+            EXPECT_EQ(phase, last + 1);
         }
-    }
-    EXPECT_EQ(next, b.paths());
+    EXPECT_EQ(b.first_fork_of_phase.back(), std::ssize(b.forks));
+    for (std::int64_t path = 0; path < b.paths(); ++path)  // each side path hangs on one body
+        EXPECT_EQ(forks[path], path < b.first_side() ? 0 : 1);
     EXPECT_LE(b.phases(), 1 + std::bit_width(GetParam().size()));
+}
+
+/// Every segment is there when it is needed, and covers bodies one after the other.
+TEST_P(Paths, MergeNeighboursThatAreThere) {
+    for (bool const pairwise : {false, true}) {
+        Branches const b(GetParam(), pairwise);
+        std::vector<std::pair<std::int64_t, std::int64_t>> of_slot(b.slots, {-1, -1});
+        auto const take = [&](std::int64_t slot, std::int64_t first, std::int64_t next) {
+            EXPECT_EQ(of_slot[slot], std::pair(first, next));
+            of_slot[slot] = {-2, -2};
+        };
+        for (PhaseLists const& lists : b.lists) {
+            for (dca::Run const& run : lists.runs) {
+                EXPECT_EQ(of_slot[run.slot], std::pair(std::int64_t{-1}, std::int64_t{-1}));
+                of_slot[run.slot] = {run.body, run.next};
+            }
+            for (auto const& level : lists.levels) {
+                std::vector<Merge> const& merges = level;
+                for (Merge const& m : merges) {
+                    take(m.inboard, m.first, m.joint);
+                    take(m.outboard, m.joint, m.next);
+                }
+                for (Merge const& m : merges) of_slot[m.slot] = {m.first, m.next};
+            }
+            for (Root const& root : lists.roots) take(root.slot, root.first, b.joints - 1);
+        }
+        for (auto const& taken : of_slot) EXPECT_EQ(taken.first, -2);
+    }
 }
 
 TEST_P(Paths, EliminateEveryJointOnce) {
@@ -102,18 +139,50 @@ TEST_P(Paths, EliminateEveryJointOnce) {
     }
 }
 
+/// First joint, eliminated joint and joint after each merge, level by level.
+std::vector<std::vector<std::array<std::int64_t, 3>>> joints_of(
+    std::vector<std::vector<Merge>> const& levels) {
+    std::vector<std::vector<std::array<std::int64_t, 3>>> joints;
+    for (std::vector<Merge> const& level : levels) {
+        joints.emplace_back();
+        for (Merge const& m : level) joints.back().push_back({m.first, m.joint, m.next});
+    }
+    return joints;
+}
+
+/// Merges and runs are those of the canonical tree, whatever the length.
 TEST(Branches, OfALineAreItsTree) {
-    Branches const b(line(1000), false);
-    EXPECT_EQ(b.phases(), 1);
-    EXPECT_TRUE(b.forks.empty());
-    EXPECT_EQ(b.depth(), ChainTree(1000, longest_run).depth());
+    for (std::int64_t const bodies : {1, 2, 15, 16, 17, 33, 40, 100, 257, 1000, 5000})
+        for (bool const pairwise : {false, true}) {
+            Branches const b(line(bodies), pairwise);
+            ASSERT_EQ(b.phases(), 1);
+            EXPECT_TRUE(b.forks.empty());
+            Schedule const expected = make_schedule(Partition({bodies}, pairwise, 1), 0);
+            EXPECT_EQ(joints_of(b.lists[0].levels), joints_of(expected.levels)) << bodies;
+            ASSERT_EQ(b.lists[0].runs.size(), expected.runs.size());
+            for (std::size_t i = 0; i < expected.runs.size(); ++i)
+                EXPECT_EQ(b.lists[0].runs[i].count, expected.runs[i].count);
+            ChainTree const tree(bodies, run_length_for(pairwise));
+            EXPECT_EQ(b.depth(), std::min(tree.run_length, bodies) - 1 + tree.levels());
+        }
 }
 
 TEST(Branches, OfABinaryTreeHaveAPhaseForEachGeneration) {
     Branches const b(binary(255), false);
     EXPECT_EQ(b.phases(), 8);
     EXPECT_EQ(b.first_of_path[1], 8);  // the longest path
-    EXPECT_GE(b.depth(), 8);
+}
+
+/// Each phase of a dendrimer takes one merge and one sum of two steps at most, and not the log2 of
+/// a path's length.
+TEST(Branches, AreAsDeepAsTheirPhases) {
+    for (int const generations : {4, 8, 12, 16})
+        EXPECT_LE(Branches(binary((std::int64_t{1} << generations) - 1), false).depth(),
+                  2 * generations)
+            << generations;
+    for (int const levels : {10, 13, 16})
+        EXPECT_LE(Branches(random_parents(3, std::int64_t{1} << levels), false).depth(), 6 * levels)
+            << levels;
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // Solver of branched chains of point beads in any Space: the sweeps of tree_sweeps.hpp over the
-// paths of one phase after the other, and the folds of side paths into the beads on which they
-// hang.
+// paths phase by phase, and the folds of side paths into the beads on which they hang.
 #pragma once
 
 #include <utility>
@@ -200,17 +199,21 @@ class BranchedSolver final : public ChainSolver {
                   records_.forces.view(),
                   records_.lost.data()} {
         space_.put(records_.lost.data(), none_lost);
-        for (PhaseLists const& lists : branches_.lists)
+        for (PhaseLists const& lists : branches_.lists) {
             tree_.emplace_back(lists.runs, lists.levels, lists.roots, branches_.slots,
                                places_.restricted, Sweeps::in_stage);
+            items_.push_back(0);
+            for (Run const& run : lists.runs) items_.back() += run.count;
+            for (std::vector<Merge> const& level : lists.levels) items_.back() += std::ssize(level);
+        }
     }
 
     void assemble_matrices(ConfigurationView const& configuration) override {
         SweepTimer const timer(space_, measured_, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
-        for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
+        for (std::int64_t phase = 0; phase < branches_.phases(); ++phase) {
+            if (phase > 0) each_fork(phase, FoldMatrices{folds()});
             space_of(phase).climb(tree_[at(phase)], MatrixSweep<BranchedLeaf>{sweeps_});
-            if (phase > 0) each_fork(phase - 1, FoldMatrices{folds()});
         }
         ++report_.matrix_sweeps;
         if (Space::answers_at_once) check();
@@ -220,13 +223,13 @@ class BranchedSolver final : public ChainSolver {
         SweepTimer const timer(space_, measured_, report_.bias_seconds);
         sweeps_.leaf.set(out.joint_force);
         BiasSweep<BranchedLeaf> const sweep{sweeps_, loads, {{}, out.acceleration, {}, {}}};
-        for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
-            space_of(phase).climb(tree_[at(phase)], sweep);
-            if (phase > 0) each_fork(phase - 1, FoldBiases{folds()});
-        }
         for (std::int64_t phase = 0; phase < branches_.phases(); ++phase) {
-            if (phase > 0) each_fork(phase - 1, Unfold{folds(), out.acceleration});
+            if (phase > 0) each_fork(phase, FoldBiases{folds()});
+            space_of(phase).climb(tree_[at(phase)], sweep);
+        }
+        for (std::int64_t phase = branches_.phases(); phase-- > 0;) {
             space_of(phase).descend(tree_[at(phase)], sweep);
+            if (phase > 0) each_fork(phase, Unfold{folds(), out.acceleration});
         }
         ++report_.bias_sweeps;
     }
@@ -265,7 +268,7 @@ class BranchedSolver final : public ChainSolver {
     static constexpr unsigned long long none_lost = PivotFailure{}.joint;
     static std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
     static std::size_t at(unsigned long long i) { return i; }
-    /// Bodies of a phase whose loops threads share.
+    /// Items of a phase whose loops threads share.
     static constexpr std::int64_t worth_threads = 4096;
 
     /// Properties of each place that the leaf reads: the fork (-1: none), whether a path ends
@@ -334,12 +337,9 @@ class BranchedSolver final : public ChainSolver {
         else
             return space;
     }
-    /// Returns the space of a phase's loops. Few bodies are not worth the barriers of threads.
+    /// Returns the space of a phase's loops. Few items are not worth the barriers of threads.
     Space const& space_of(std::int64_t phase) const {
-        auto const place_of = [this](std::int64_t p) {
-            return branches_.first_of_path[at(branches_.first_of_phase[at(p)])];
-        };
-        return place_of(phase + 1) - place_of(phase) < worth_threads ? alone_ : space_;
+        return items_[at(phase)] < worth_threads ? alone_ : space_;
     }
     /// Runs a loop over the forks of a phase.
     template <class Loop>
@@ -347,16 +347,13 @@ class BranchedSolver final : public ChainSolver {
         loop.first = branches_.first_fork_of_phase[at(phase)];
         space_of(phase).for_each(branches_.first_fork_of_phase[at(phase) + 1] - loop.first, loop);
     }
-    std::int64_t first_side() const {
-        return branches_.phases() > 1 ? branches_.first_of_phase[1] : branches_.paths();
-    }
-    std::int64_t side_paths() const { return branches_.paths() - first_side(); }
+    std::int64_t side_paths() const { return branches_.paths() - branches_.first_side(); }
     Folds folds() {
         return {sweeps_,
                 lists_.forks.data(),
                 forks_.beads(),
                 forks_.side.data(),
-                first_side(),
+                branches_.first_side(),
                 lists_.body.data(),
                 lists_.first_of_path.data(),
                 mass_.view()};
@@ -371,8 +368,9 @@ class BranchedSolver final : public ChainSolver {
     Places const places_;
     Lists lists_;
     Forks forks_;
-    // Trees of the phases.
+    // Trees of the phases, and their numbers of bodies in runs and of merges.
     std::vector<typename Space::Tree> tree_;
+    std::vector<std::int64_t> items_;
     Arrays records_;
     Sweeps sweeps_;
     bool measured_ = false;

@@ -15,6 +15,8 @@ std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, Executor co
                                                   Communicator const&);
 std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const&, Executor const&,
                                                      Communicator const&);
+std::unique_ptr<ChainSolver> make_body_tree_solver(ChainGroup const&, Executor const&,
+                                                   Communicator const&);
 
 }  // namespace dca
 
@@ -23,6 +25,8 @@ namespace {
 /// Selects the host solver of chains without loops, or with their loops open.
 std::unique_ptr<ChainSolver> make_open_solver(ChainGroup const& group, Executor const& executor,
                                               Communicator const& communicator) {
+    if (group.is_branched() && !group.beads)
+        return dca::make_body_tree_solver(group, executor, communicator);
     if (group.handles == Handles::articulated)
         return dca::make_articulated_solver(group, executor, communicator);
     if (!group.branching.crosslinks.empty())

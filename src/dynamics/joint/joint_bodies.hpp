@@ -55,7 +55,7 @@ class JointBodies {
         if constexpr (has_lanes)
             if (JointLanes placed(group, g.given.springs,
                                   loads.eliminated && solver.has_runs_side_by_side(), space.simd());
-                placed.any())
+                placed.any() && !group.is_branched())
                 lanes = std::move(placed);
     }
 

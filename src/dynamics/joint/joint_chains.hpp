@@ -38,13 +38,18 @@ struct JointChains : JointLoads {
     /// the joint glides, components 0-1 are those of handle 2 too.
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, 4> outboard_end_of(Place k) const {
-        auto const e2 = moved.axes2(k);
+        return end_of(k, k, k + 1);
+    }
+    /// Value of outboard_end_of() for any body, with the place of its handle and the joint there.
+    template <class Place>
+    CATENA_HD Vector<RealAt<Place>, 4> end_of(Place k, Place handle_of, Place joint) const {
+        auto const e2 = moved.axes2(handle_of);
         Vec3At<Place> along = transposed_times(e2, read(alpha, k));
         RealAt<Place> slide(0);
         if (moved.joints().has_screws) {
-            Vec3At<Place> const handle = acceleration_at(k, moved.r2(k));
+            Vec3At<Place> const handle = acceleration_at(k, moved.r2(handle_of));
             slide = dot(e2.column(2), handle);
-            if (moved.joints().glides(k + 1))
+            if (moved.joints().glides(joint))
                 for (int i = 0; i < 2; ++i) along[i] = dot(e2.column(i), handle);
         }
         return {{along[0], along[1], along[2], slide}};
@@ -52,6 +57,7 @@ struct JointChains : JointLoads {
     /// Acceleration of the inboard side of joint k; zero on the ground.
     CATENA_HD Vector<double, 4> inboard_end_of(std::int64_t k) const {
         if (moved.joints().is_first[k]) return Vector<double, 4>::zero();
+        if (moved.joints().inboard) return end_of(moved.joints().inboard[k], k, k);
         return k == 0 ? outboard_end.load(-1) : outboard_end_of(k - 1);
     }
     template <class Place>

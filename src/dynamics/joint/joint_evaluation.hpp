@@ -123,6 +123,7 @@ void with_solution(JointBodies<Space>& bodies, Use const& use) {
                &tip_force = space.read(solution.tip_force);
     JointSolution all{bodies.group,
                       loads.given,
+                      bodies.motion.kinematics().joints().levels(),
                       joint_turn.view(),
                       orientation.view(),
                       omega.view(),

@@ -171,15 +171,28 @@ struct JointLoads {
             push = push + f;
             moment = moment + cross(moved.r1(k), f);
         }
-        if (moved.joints().ends_chain(k)) return;
-        auto const out = read(joint_load, k + 1);
-        auto const e2 = moved.axes2(k);
-        bool const across2 = moved.joints().glides(k + 1);
+        if constexpr (is_one_body<Place>)
+            if (moved.joints().inboard) {
+                JointsView const& joints = moved.joints();
+                for (std::int64_t c = joints.first_child[k]; c < joints.first_child[k + 1]; ++c)
+                    add_reaction(joints.child[c], joints.child[c], moment, push);
+                return;
+            }
+        if (!moved.joints().ends_chain(k)) add_reaction(k, k + 1, moment, push);
+    }
+    /// Adds the reaction to the known load of a joint to the moment and force on its inboard body.
+    /// `handle_of`: place of that body's handle.
+    template <class Place>
+    CATENA_HD void add_reaction(Place handle_of, Place joint, Vec3At<Place>& moment,
+                                Vec3At<Place>& push) const {
+        auto const out = read(joint_load, joint);
+        auto const e2 = moved.axes2(handle_of);
+        bool const across2 = moved.joints().glides(joint);
         moment = moment - torque_of(e2, out, across2);
         if (moved.joints().has_screws) {
-            Vector3 const f = force_of(e2, out, across2);
+            auto const f = force_of(e2, out, across2);
             push = push - f;
-            moment = moment - cross(moved.r2(k), f);
+            moment = moment - cross(moved.r2(handle_of), f);
         }
     }
     /// Wrench on body k from outside the chain and from carried beads, W.

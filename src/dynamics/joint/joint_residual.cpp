@@ -21,6 +21,9 @@ struct JointSolution::Terms {
     /// Sum of |r| |f| over joint forces. The rounding of a moment is proportional to it, however
     /// small the moment is.
     double moment_sizes = 0;
+    /// Sum of |f| over the outboard joints of a branched body, whose forces are added up. A sum may
+    /// be small although its terms are not.
+    double force_sizes = 0;
 };
 
 namespace {
@@ -57,14 +60,36 @@ JointSolution::Pair JointSolution::outboard_pair(std::int64_t k) const {
     return along_axes(joint_force, k + 1, outboard_screw(k));
 }
 
+void JointSolution::add_reaction(std::int64_t handle_of, Pair const& outboard, Terms& t) const {
+    Mat3 const e2 = axes2(handle_of);
+    Vec3 const push = -(e2 * outboard.force);
+    t.forces[2] = t.forces[2] + push;
+    t.moments[3] = t.moments[3] + cross(r2(handle_of), push);
+    t.moments[4] = t.moments[4] - e2 * outboard.torque;
+    t.moment_sizes += norm(r2(handle_of)) * norm(push) + norm(outboard.torque);
+    t.force_sizes += norm(push);
+}
+
 JointSolution::Terms JointSolution::terms(std::int64_t k) const {
-    Mat3 const e1 = axes1(k), e2 = axes2(k);
-    Pair const inboard = along_axes(joint_force, k, screw(k)), outboard = outboard_pair(k);
-    Vec3 const force1 = e1 * inboard.force, force2 = -(e2 * outboard.force);
-    return {{{force.origin ? force.load(k) : Vec3::zero(), force1, force2}},
-            {{torque.load(k), cross(group.bodies.r1[k], force1), e1 * inboard.torque,
-              cross(r2(k), force2), -(e2 * outboard.torque)}},
-            norm(group.bodies.r1[k]) * norm(force1) + norm(r2(k)) * norm(force2)};
+    Mat3 const e1 = axes1(k);
+    Pair const inboard = along_axes(joint_force, k, screw(k));
+    Vec3 const force1 = e1 * inboard.force, none = Vec3::zero();
+    Terms t{{{force.origin ? force.load(k) : none, force1, none}},
+            {{torque.load(k), cross(group.bodies.r1[k], force1), e1 * inboard.torque, none, none}},
+            norm(group.bodies.r1[k]) * norm(force1)};
+    if (levels.levels() > 0) {
+        for (std::int64_t const c : levels.children(k))
+            add_reaction(c, along_axes(joint_force, c, screw(c)), t);
+        return t;
+    }
+    Pair const outboard = outboard_pair(k);
+    Mat3 const e2 = axes2(k);
+    Vec3 const force2 = -(e2 * outboard.force);
+    t.forces[2] = force2;
+    t.moments[3] = cross(r2(k), force2);
+    t.moments[4] = -(e2 * outboard.torque);
+    t.moment_sizes += norm(r2(k)) * norm(force2);
+    return t;
 }
 
 /// Acceleration of a handle along its joint's axes (linear, angular), and the sizes of its terms
@@ -75,6 +100,7 @@ Vector<double, 8> JointSolution::handle(std::int64_t k, Vec3 const& r, Mat3 cons
     Vec3 const w = omega.load(k), centripetal = cross(w, cross(w, r));
     double linear = norm(centripetal) + norm(given.gravity), angular = 0;
     for (Vec3 const& f : t.forces) linear += group.bodies.inverse_mass.view().at(k, 0) * norm(f);
+    linear += group.bodies.inverse_mass.view().at(k, 0) * t.force_sizes;
     for (Vec3 const& m : t.moments) {
         Vec3 const part = as_symmetric(group.bodies.inverse_inertia[k]) * m;
         angular += norm(part);
@@ -156,6 +182,8 @@ double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> co
 Vector<double, 8> JointSolution::handle_before(std::int64_t k,
                                                Vector<double, 8> const& before_first) const {
     if (group.ends.is_first[k]) return Vector<double, 8>::zero();
+    if (levels.levels() > 0)
+        return handle(group.branching.inboard[static_cast<std::size_t>(k)], r2(k), axes2(k));
     return k == 0 ? before_first : handle(k - 1, r2(k - 1), axes2(k - 1));
 }
 
@@ -197,7 +225,8 @@ double JointSolution::residual(Communicator const& communicator, Executor const&
         // The acceleration of the ground replaces the weight of bodies. In free fall, therefore,
         // only the rounding of the weight is left in the terms.
         double const mass = group.bodies.mass.view().at(k, 0), weight = mass * norm(given.gravity);
-        worst = larger(worst, balance(mass * acceleration.load(k), t.forces, weight));
+        worst =
+            larger(worst, balance(mass * acceleration.load(k), t.forces, weight + t.force_sizes));
         worst = larger(worst, balance(inertial_moment(k), t.moments,
                                       t.moment_sizes + weight * norm(group.bodies.r1[k])));
         double const size = norm(group.bodies.r1[k]) + radius_of(group, k);

@@ -4,6 +4,7 @@
 #include "dynamics/absolute_dynamics.hpp"
 #include "dynamics/joint/closed_loops.hpp"
 #include "dynamics/joint/joint_chains.hpp"
+#include "tree/levels.hpp"
 
 namespace catena {
 
@@ -26,6 +27,8 @@ struct MeetingPlaces {
 struct JointSolution {
     ChainGroup const& group;
     BodyLoads const& given;
+    /// Bodies that hang on each body of branched chains; without levels for other chains.
+    dca::Levels const& levels;
     /// Quaternions MotionView::joint_turn and MotionView::orientation.
     ConstView<4> joint_turn, rotation;
     /// Fields of MotionView.
@@ -58,7 +61,8 @@ struct JointSolution {
     /// Adds the forces of loops.
     void add_loop_forces(BodyResults&) const;
     Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(rotation.load(k))); }
-    /// Axes of the outboard joint, B.
+    /// Axes of the outboard joint, B. In branched chains, entry k is of the inboard body of body k
+    /// at the joint between them; likewise r2().
     Mat3 axes2(std::int64_t k) const {
         return axes_of(group.joints.moving_meeting() ? moving.axes2.load(k)
                                                      : group.bodies.axes2[k]);
@@ -91,6 +95,9 @@ struct JointSolution {
     Pair along_axes(ConstDirectionsView forces, std::int64_t at, Screw<double> const&) const;
     /// Constraint force of the outboard joint of body k, along that joint's axes.
     Pair outboard_pair(std::int64_t k) const;
+    /// Adds the reaction to the constraint force of a joint, given along its axes, to the terms of
+    /// the inboard body. `handle_of`: place of that body's handle.
+    void add_reaction(std::int64_t handle_of, Pair const& outboard, Terms&) const;
     /// Terms of the Newton-Euler equations of body k.
     Terms terms(std::int64_t k) const;
     /// Variant of terms() for the equations that are solved: in planar chains only moments about

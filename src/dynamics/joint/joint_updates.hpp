@@ -51,6 +51,8 @@ void update_all(JointBodies<Space>& bodies, bool again) {
     };
     JointKinematics<Space>& kinematics = bodies.motion.kinematics();
     if constexpr (JointBodies<Space>::has_lanes) {
+        if (kinematics.goes_by_levels())
+            return kinematics.template sweep<positions>(c.moved.scan, shown, set_motion);
         if (bodies.lanes) {
             bodies.lanes->follow(bodies.space, positions, c.moved.scan);
             kinematics.template sweep<positions>(c.moved.scan, bodies.lanes->tree(), shown);

@@ -12,7 +12,8 @@ namespace catena {
 /// from these.
 struct MovedBodies {
     JointScan scan;
-    /// Handle 2 of bodies where it does not move (GroupView::r2, axes2).
+    /// Handle 2 of bodies where it does not move (GroupView::r2, axes2). In branched chains, entry
+    /// k is the handle of the inboard body of body k at the joint between them, as in MotionView.
     ConstView<3> fixed_r2;
     ConstView<6> fixed_axes2;
     double time = 0;  // Time of the state, ps.
@@ -50,13 +51,13 @@ struct MovedBodies {
     CATENA_HD Vec3At<Place> r1(Place k) const {
         return read(joints().r1, k);
     }
-    /// Axes of the outboard joint of body k, B.
+    /// Axes of the outboard joint of body k, B; or entry k as described above.
     template <class Place>
     CATENA_HD Mat3At<Place> axes2(Place k) const {
         return axes_of(scan.motion.axes2.origin ? read(scan.motion.axes2, k)
                                                 : read(fixed_axes2, k));
     }
-    /// Handle 2 of body k from its centre of mass, B.
+    /// Handle 2 of body k from its centre of mass, B; or entry k as described above.
     template <class Place>
     CATENA_HD Vec3At<Place> r2(Place k) const {
         return scan.motion.r2.origin ? read(scan.motion.r2, k) : read(fixed_r2, k);
