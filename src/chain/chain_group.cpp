@@ -317,7 +317,7 @@ void fill_loops(ChainGroup& group, Scene const& scene) {
         };
         for (LoopClosure const& loop : scene.chains[group.chains[piece.chain].in_scene].loops) {
             TipJoint const& j = loop.joint;
-            group.loops.push_back(
+            group.loops.own.push_back(
                 {local(loop.inboard), local(loop.outboard), static_cast<std::int64_t>(p), j,
                  joint_axes(j.type, j.axis, j.first_axis), screw_of(j.type, j.pitch),
                  restricted_by(j.type), loop.end_rotation, loop.end_translation});
@@ -432,16 +432,16 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.directions = directions_of(group);
     group.planar = group.directions == 2;
     bool const by_paths = scene::goes_by_paths(any);
-    group.has_loops = any.has_loops();
+    group.loops.in_scene = any.has_loops();
     group.partition = dca::Partition(lengths, pairwise, communicator.size(), tips);
-    group.partition.whole_chains = by_paths || group.has_loops;
+    group.partition.whole_chains = by_paths || group.loops.in_scene;
     if (group.partition.whole_chains || !options.shares.empty())
         dca::cut_by_shares(group.partition, communicator.size(), options.shares);
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
     group.revolute = !group.beads && !group.linked && group.directions == 5 &&
-                     !group.joints.has_screws && !group.has_loops &&
+                     !group.joints.has_screws && !group.loops.in_scene &&
                      std::all_of(chains.begin(), chains.end(),
                                  [&](int chain) { return is_revolute(scene.chains[chain]); });
     group.ends.tips_in_scene = std::any_of(tips.begin(), tips.end(),
@@ -463,20 +463,18 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     return group;
 }
 
-/// Least number of a group of chains with loops.
-int constexpr first_group_of_loops = 10;
-/// Returns a number that is equal for chains of one group.
-int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
-    if (spec.has_loops())
-        return first_group_of_loops + (carries_all(handles) || (implicit && scene::resists(spec))
-                                           ? 6
-                                           : smallest_directions(spec));
+/// Returns a number below 10 that is equal for chains of one group, apart from their loops.
+int group_of_bodies(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
     if (spec.is_cross_linked()) return 8;
     if (scene::branches(spec)) return spec.is_beads() ? 7 : 9;
     if (spec.is_beads()) return 0;
     if (spec.is_linked()) return 1;
     if (carries_all(handles) || (implicit && scene::resists(spec))) return 6;
     return axes == Axes::world ? 3 : smallest_directions(spec);
+}
+/// Returns a number that is equal for chains of one group.
+int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
+    return group_of_bodies(spec, axes, handles, implicit) + (spec.has_loops() ? 10 : 0);
 }
 
 }  // namespace

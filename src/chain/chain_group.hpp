@@ -51,10 +51,7 @@ struct ChainGroup {
     LocalJoints joints;
     LocalBodies bodies;
     Branching branching;
-    /// Loops of this rank's chains, chain by chain.
-    std::vector<LocalLoop> loops;
-    /// True if the chains of the group have loops, on any rank.
-    bool has_loops = false;
+    LocalLoops loops;
     LocalBeads carried;
     NeighbourRanks neighbours;
 
@@ -69,7 +66,7 @@ struct ChainGroup {
     /// Name of the smallest handle kind: link | planar | spherical | universal | revolute | full.
     char const* kind() const;
     /// True if some chain of the group has a jointed tip or loops, on any rank.
-    bool has_closures() const { return ends.has_tips() || has_loops; }
+    bool has_closures() const { return ends.has_tips() || loops.in_scene; }
     bool is_branched() const { return branching.paths.of_all_ranks.paths > 0; }
     /// Entry of the first cross-link in arrays over links.
     std::int64_t first_crosslink() const { return size + 1; }

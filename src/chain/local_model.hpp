@@ -170,6 +170,14 @@ struct LocalLoop {
     Vec3 end_translation;
 };
 
+/// Loops of a group's chains.
+struct LocalLoops {
+    /// True if the chains of the group have loops, on any rank.
+    bool in_scene = false;
+    /// Loops of this rank's chains, chain by chain.
+    std::vector<LocalLoop> own;
+};
+
 /// Beads that the rigid bodies of a group carry.
 struct LocalBeads {
     /// True if some body of the group carries beads, on any rank.

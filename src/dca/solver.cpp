@@ -52,7 +52,7 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
     // The message recommends articulated handles where they exist: open chains in joint coordinates
     // without implicit springs.
     bool const open =
-        !group.beads && !group.linked && group.axes == Axes::joint && !group.has_closures();
+        !group.beads && !group.linked && group.axes == Axes::joint && !group.ends.has_tips();
     bool const may = open && group.handles != Handles::articulated && group.joints.implicit.empty();
     std::string const what =
         group.handles == Handles::articulated ? "an articulated inertia" : "the matrix of a joint";

@@ -115,7 +115,7 @@ struct ConfigurationView {
     ConstView<3> position{};
     LocalPiece const* piece = nullptr;
     std::int64_t pieces = 0;
-    /// Ends of ChainGroup::loops, on the host. They must stay valid until the last solve().
+    /// Ends of LocalLoops::own, on the host. They must stay valid until the last solve().
     LoopEnds const* loop_ends = nullptr;
 };
 
@@ -161,7 +161,7 @@ struct LoadsView {
     /// `bias` is then needed only for bodies that begin a chain or form a run of one body.
     ConstView<1> revolute_rate{};
     RevoluteLoads revolutes{};
-    /// Subtracted velocity terms of ChainGroup::loops, along the directions of each, as `tip_bias`.
+    /// Subtracted velocity terms of LocalLoops::own, along the directions of each, as `tip_bias`.
     Vector<double, 6> const* loop_bias = nullptr;
 };
 
@@ -193,7 +193,7 @@ struct AccelerationsView {
     /// Component 1 belongs to the joint after such a run: angular acceleration of the run's last
     /// body about that joint's axis, relative to the ground.
     View<2> revolute_acceleration{};
-    /// Constraint force of ChainGroup::loops on the outboard bodies, along the directions of each.
+    /// Constraint force of LocalLoops::own on the outboard bodies, along the directions of each.
     Vector<double, 6>* loop_force = nullptr;
     /// True if runs on revolute joints compute the accelerations of all their bodies, not only of
     /// those named above.

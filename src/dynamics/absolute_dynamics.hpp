@@ -43,7 +43,7 @@ struct BodyResults {
     std::vector<Vector<double, 6>> joint_force;
     std::vector<TipForce> tip_force;
     /// Constraint force of each loop's joint on its inboard body or the ground, in the order of
-    /// ChainGroup::loops. The torque is about the origin of the joint frame.
+    /// LocalLoops::own. The torque is about the origin of the joint frame.
     std::vector<TipForce> loop_force;
     /// Tension of each cross-link of the group, in the order of Branching::crosslinks.
     std::vector<CrossLinkTension> crosslink_tension;

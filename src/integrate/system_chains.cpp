@@ -40,7 +40,7 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend,
 /// Throws InputError if articulated handles do not support this group. Validation has already
 /// refused chains with links or closed tips.
 void refuse_articulated(ChainGroup const& group, bool implicit) {
-    if (!group.beads && !group.linked && !group.has_closures() && group.axes == Axes::joint &&
+    if (!group.beads && !group.linked && !group.ends.has_tips() && group.axes == Axes::joint &&
         !implicit)
         return;
     throw InputError(

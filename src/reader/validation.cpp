@@ -108,17 +108,17 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
         if (is_langevin(integrator)) refuse_resistance(root, scene, draft);
         return;
     }
+    if (chain.has_loops())
+        fail(at,
+             fmt::format("integrator {} works in absolute coordinates, chain `{}` has loops",
+                         name_of(integrator), shown(chain.name)),
+             joint_integrators);
     if (is_body_tree(chain))
         fail(
             at,
             fmt::format("integrator {} moves no branched chains of rigid bodies, chain `{}` is one",
                         name_of(integrator), shown(chain.name)),
             joint_integrators);
-    if (chain.has_loops())
-        fail(at,
-             fmt::format("integrator {} works in absolute coordinates, chain `{}` has loops",
-                         name_of(integrator), shown(chain.name)),
-             joint_integrators);
     if (auto const odd = joint_without_absolute_coordinates(chain)) {
         std::string const place =
             odd->first < chain.bodies.size() ? fmt::format("joint {}", odd->first + 1) : "its tip";
@@ -149,7 +149,6 @@ void check_handles(Node const& root, Scene const& scene, Draft const& draft, boo
     ChainSpec const& chain = draft.chain;
     char const* const why = chain.bodies.size() == 0 ? "has links"
                             : chain.is_ring()        ? "is a ring"
-                            : chain.has_loops()      ? "has loops"
                                                      : "has a jointed tip";
     fail(*root.find("solver")->find("handles"),
          fmt::format("articulated handles for chain `{}`, which {}", shown(chain.name), why),
@@ -233,12 +232,12 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
              std::string(section ? "give `temperature: 300` in `dynamics`"
                                  : "add `dynamics: {temperature: 300}`") +
                  ", or write `velocities: zero`");
-    if (is_body_tree(draft.chain))
-        fail(at, "thermal velocities for a branched chain of rigid bodies",
-             "write `velocities: zero`, or give each joint its `qd`; `integrator: baoab` warms it");
     if (draft.chain.has_loops())
         fail(at, "thermal velocities in a chain with loops",
              "write `velocities: zero`, or give each joint its `qd`");
+    if (is_body_tree(draft.chain))
+        fail(at, "thermal velocities for a branched chain of rigid bodies",
+             "write `velocities: zero`, or give each joint its `qd`; `integrator: baoab` warms it");
     if (auto const odd = joint_without_absolute_coordinates(draft.chain))
         fail(at, fmt::format("thermal velocities for {} joints", name_of(odd->second)),
              "write `velocities: zero`, or give each joint its `qd`");

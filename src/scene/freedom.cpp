@@ -73,12 +73,12 @@ bool any_slides(ChainSpec const& chain) {
            (chain.tip == Tip::jointed && slides(chain.tip_joint.type));
 }
 
-/// True for an unbranched open chain of revolute joints from the ground on, or one with a jointed
-/// tip, that rotates about one axis, in one plane. Loops need forces along all directions. The
-/// tolerance is rounding, because planar handles omit all motion out of the plane.
+/// True for an unbranched chain of revolute joints from the ground on, without loops, that rotates
+/// about one axis, in one plane. Loops need forces along all directions. The tolerance is rounding,
+/// because planar handles omit all motion out of the plane.
 bool is_planar(ChainSpec const& chain) {
     std::size_t odd = 0;
-    return chain.base == Base::fixed && !chain.has_loops() && !chain.is_branched() &&
+    return chain.base == Base::fixed && !chain.is_branched() && !chain.has_loops() &&
            !any_slides(chain) && parallel_within(rounding, chain, odd);
 }
 
@@ -145,7 +145,7 @@ char const* name_of(HandleKind kind) {
 }
 
 bool takes_articulated_handles(ChainSpec const& chain) {
-    return chain.bodies.size() > 0 && !chain.is_closed();
+    return chain.bodies.size() > 0 && chain.tip == Tip::free;
 }
 
 std::int64_t degrees_of_freedom(ChainSpec const& chain) {

@@ -56,7 +56,7 @@ std::unique_ptr<ChainSolver> make_open_solver(ChainGroup const& group, Executor 
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor const& executor,
                                               Communicator const& communicator) {
     auto open = make_open_solver(group, executor, communicator);
-    if (!group.has_loops) return open;
+    if (!group.loops.in_scene) return open;
     return std::make_unique<dca::LoopedSolver>(group, std::move(open));
 }
 

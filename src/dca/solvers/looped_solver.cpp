@@ -27,9 +27,10 @@ LoopedSolver::LoopedSolver(ChainGroup const& group, std::unique_ptr<ChainSolver>
       force_(group.size),
       alpha_(group.size),
       acceleration_(group.size),
-      components_(group.loops.size()) {
-    for (std::size_t l = 0; l < group.loops.size(); ++l) {
-        if (l == 0 || group.loops[l].piece != group.loops[l - 1].piece) chains_.push_back({l, l});
+      components_(group.loops.own.size()) {
+    for (std::size_t l = 0; l < group.loops.own.size(); ++l) {
+        if (l == 0 || group.loops.own[l].piece != group.loops.own[l - 1].piece)
+            chains_.push_back({l, l});
         chains_.back().end = l + 1;
     }
     for (Chain& chain : chains_) {
@@ -44,7 +45,7 @@ LoopedSolver::LoopedSolver(ChainGroup const& group, std::unique_ptr<ChainSolver>
 std::vector<LoopedSolver::Direction> LoopedSolver::directions_of(Chain const& chain) const {
     std::vector<Direction> all;
     for (std::size_t l = chain.first; l < chain.end; ++l)
-        for (int i = 0; i < group_.loops[l].restricted; ++i) all.push_back({l, i});
+        for (int i = 0; i < group_.loops.own[l].restricted; ++i) all.push_back({l, i});
     return all;
 }
 
@@ -65,7 +66,7 @@ LoopedSolver::Along LoopedSolver::side(std::int64_t body, LoopEnd const& end, Fo
 
 Vector<double, 6> LoopedSolver::apart(std::size_t l, Found const& found,
                                       ConstView<3> const& omega) const {
-    LocalLoop const& loop = group_.loops[l];
+    LocalLoop const& loop = group_.loops.own[l];
     Along const out = side(loop.outboard, ends_[l].outboard, found, omega),
                 in = side(loop.inboard, ends_[l].inboard, found, omega);
     return along_directions(as_screw(loop.screw),
@@ -73,7 +74,7 @@ Vector<double, 6> LoopedSolver::apart(std::size_t l, Found const& found,
 }
 
 void LoopedSolver::push(std::size_t l, Vector<double, 6> const& components) {
-    LocalLoop const& loop = group_.loops[l];
+    LocalLoop const& loop = group_.loops.own[l];
     Along const along = along_axes(as_screw(loop.screw), components);
     auto const add = [&](std::int64_t body, LoopEnd const& end, double sign) {
         if (body == LoopClosure::ground) return;
@@ -87,7 +88,7 @@ void LoopedSolver::push(std::size_t l, Vector<double, 6> const& components) {
 }
 
 void LoopedSolver::release() {
-    for (LocalLoop const& loop : group_.loops)
+    for (LocalLoop const& loop : group_.loops.own)
         for (std::int64_t const body : {loop.inboard, loop.outboard}) {
             if (body == LoopClosure::ground) continue;
             force_.set(body, Vec3::zero());
@@ -96,7 +97,7 @@ void LoopedSolver::release() {
 }
 
 double LoopedSolver::free_response(Direction const& direction) const {
-    LocalLoop const& loop = group_.loops[direction.loop];
+    LocalLoop const& loop = group_.loops.own[direction.loop];
     Along const along = along_axes(as_screw(loop.screw), unit(direction.number));
     auto const of = [&](std::int64_t body, LoopEnd const& end) {
         if (body == LoopClosure::ground) return 0.0;
@@ -127,7 +128,7 @@ void LoopedSolver::respond(Eigen::Index round) {
         Eigen::Index row = 0;
         for (std::size_t l = chain.first; l < chain.end; ++l) {
             Vector<double, 6> const moved = apart(l, {alpha_.view(), acceleration_.view()}, {});
-            for (int i = 0; i < group_.loops[l].restricted; ++i)
+            for (int i = 0; i < group_.loops.own[l].restricted; ++i)
                 chain.matrix(row++, round) = moved[i];
         }
     }
@@ -159,7 +160,7 @@ Eigen::VectorXd LoopedSolver::open_directions(Chain const& chain, LoadsView cons
     Eigen::Index row = 0;
     for (std::size_t l = chain.first; l < chain.end; ++l) {
         Vector<double, 6> const moved = apart(l, found, loads.omega);
-        for (int i = 0; i < group_.loops[l].restricted; ++i)
+        for (int i = 0; i < group_.loops.own[l].restricted; ++i)
             open[row++] = -(moved[i] + (loads.loop_bias ? loads.loop_bias[l][i] : 0.0));
     }
     return open;
@@ -170,7 +171,7 @@ void LoopedSolver::add_forces(Chain const& chain, Eigen::VectorXd const& open) {
     Eigen::Index row = 0;
     for (std::size_t l = chain.first; l < chain.end; ++l) {
         auto components = Vector<double, 6>::zero();
-        for (int i = 0; i < group_.loops[l].restricted; ++i) components[i] = found[row++];
+        for (int i = 0; i < group_.loops.own[l].restricted; ++i) components[i] = found[row++];
         push(l, components);
         components_[l] = components_[l] + components;
     }
@@ -217,7 +218,7 @@ SolverReport LoopedSolver::report() const {
     r.matrix_seconds += of_matrices_;
     r.bias_seconds -= swept_for_matrices_;
     r.memory_bytes += static_cast<std::int64_t>(4 * 3 * sizeof(double)) * group_.size +
-                      static_cast<std::int64_t>(sizeof(LocalLoop)) * std::ssize(group_.loops);
+                      static_cast<std::int64_t>(sizeof(LocalLoop)) * std::ssize(group_.loops.own);
     for (Chain const& chain : chains_)
         r.memory_bytes += static_cast<std::int64_t>(2 * sizeof(double)) * chain.matrix.size();
     return r;
@@ -225,7 +226,7 @@ SolverReport LoopedSolver::report() const {
 
 void LoopedSolver::refuse(Chain const& chain) const {
     dca::Piece const& piece =
-        group_.pieces[static_cast<std::size_t>(group_.loops[chain.first].piece)];
+        group_.pieces[static_cast<std::size_t>(group_.loops.own[chain.first].piece)];
     throw ComputationError("the matrix of the " + std::to_string(chain.end - chain.first) +
                            " loops of chain " +
                            group_.chains[static_cast<std::size_t>(piece.chain)].name +

@@ -27,7 +27,7 @@ class LoopedSolver final : public ChainSolver {
     SolverReport report() const override;
 
   private:
-    /// Loops of one chain of the group: entries [first, end) of ChainGroup::loops, and the first of
+    /// Loops of one chain of the group: entries [first, end) of LocalLoops::own, and the first of
     /// their restricted directions.
     struct Chain {
         std::size_t first = 0, end = 0;

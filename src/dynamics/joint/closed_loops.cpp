@@ -2,8 +2,10 @@
 #include "dynamics/joint/closed_loops.hpp"
 
 #include <cmath>
+#include <string>
 
 #include "dynamics/absolute_dynamics.hpp"
+#include "error.hpp"
 
 namespace catena {
 namespace {
@@ -24,12 +26,12 @@ Motion motion_of(std::int64_t body, MotionView const& m) {
 ClosedLoops::ClosedLoops(ChainGroup const& group, double reach)
     : group_(group),
       reach_(reach),
-      motions_(group.loops.size(), {Motion::none(), Motion::none()}),
-      places_(group.loops.size()),
-      ends_(group.loops.size()),
-      bias_(group.loops.size(), Vector<double, 6>::zero()),
-      force_(group.loops.size(), Vector<double, 6>::zero()) {
-    for (LocalLoop const& loop : group.loops) {
+      motions_(group.loops.own.size(), {Motion::none(), Motion::none()}),
+      places_(group.loops.own.size()),
+      ends_(group.loops.own.size()),
+      bias_(group.loops.own.size(), Vector<double, 6>::zero()),
+      force_(group.loops.own.size(), Vector<double, 6>::zero()) {
+    for (LocalLoop const& loop : group.loops.own) {
         joints_.push_back(tip_of(loop.joint, loop.axes, loop.screw, loop.restricted));
         joints_.back().com = com_of(group, loop.inboard);
         end_rotation_.push_back(to_quaternion(loop.end_rotation));
@@ -38,7 +40,7 @@ ClosedLoops::ClosedLoops(ChainGroup const& group, double reach)
 
 /// The frame G moves with the outboard body.
 JointedTips::Ends ClosedLoops::motions_of(std::size_t l, MotionView const& m) const {
-    LocalLoop const& loop = group_.loops[l];
+    LocalLoop const& loop = group_.loops.own[l];
     Motion const body = motion_of(loop.outboard, m);
     Mat3 const& to_body = loop.end_rotation;
     Vec3 const& at = loop.end_translation;
@@ -52,7 +54,7 @@ void ClosedLoops::set_ends(MotionView const& m) {
     for (std::size_t l = 0; l < joints_.size(); ++l) {
         motions_[l] = motions_of(l, m);
         JointedTips::Place const& at = places_[l] = JointedTips::place(joints_[l], motions_[l]);
-        LocalLoop const& loop = group_.loops[l];
+        LocalLoop const& loop = group_.loops.own[l];
         Mat3 const axes = to_matrix(motions_[l].last.rotation) * at.axes;
         Quat const outboard = motion_of(loop.outboard, m).rotation;
         ends_[l] = {{at.point, at.axes},
@@ -63,7 +65,7 @@ void ClosedLoops::set_ends(MotionView const& m) {
 
 void ClosedLoops::set_acceleration_bias(Vec3 const& gravity) {
     for (std::size_t l = 0; l < joints_.size(); ++l) {
-        LocalLoop const& loop = group_.loops[l];
+        LocalLoop const& loop = group_.loops.own[l];
         JointedTips::Pair terms = JointedTips::velocity_terms(joints_[l], motions_[l], places_[l]);
         // Bodies accelerate relative to a frame that falls; the ground rises in it.
         double const rises = (loop.outboard == LoopClosure::ground ? 1.0 : 0.0) -
@@ -89,9 +91,47 @@ double ClosedLoops::error() const {
     return worst;
 }
 
+void ClosedLoops::refuse_parting(ConstView<3> const& alpha,
+                                 ConstView<3> const& acceleration) const {
+    // A contradiction leaves much of the speeds; near a singular position less than 1e-4 is left.
+    double constexpr much = 1e-3;
+    for (std::size_t l = 0; l < joints_.size(); ++l) {
+        LocalLoop const& loop = group_.loops.own[l];
+        auto const change = [&](std::int64_t body, LoopEnd const& end) -> JointedTips::Pair {
+            if (body == LoopClosure::ground) return {Vec3::zero(), Vec3::zero()};
+            Vec3 const turn = alpha.load(body);
+            return {transposed_times(end.axes, turn),
+                    transposed_times(end.axes, acceleration.load(body) + cross(turn, end.arm))};
+        };
+        JointedTips::Pair const out = change(loop.outboard, ends_[l].outboard),
+                                in = change(loop.inboard, ends_[l].inboard);
+        Vector<double, 6> left =
+            bias_[l] + JointedTips::along_directions(
+                           joints_[l], {out.angular - in.angular, out.linear - in.linear});
+        for (int i = loop.restricted; i < 6; ++i) left[i] = 0;
+        dca::AlongAxes<double> const parts = dca::along_axes(joints_[l].screw, left);
+        Motion const &a = motions_[l].last, &b = motions_[l].other;
+        double const turning = norm(a.omega) + norm(b.omega),
+                     speed = norm(a.velocity) + norm(b.velocity);
+        if (!(norm(parts.angular) > much * turning) &&
+            !(norm(parts.linear) > much * (speed + reach_ * turning)))
+            continue;
+        dca::Piece const& piece = group_.pieces[static_cast<std::size_t>(loop.piece)];
+        auto const name = [&](std::int64_t body) {
+            return body == LoopClosure::ground ? std::string("the ground")
+                                               : "body " + std::to_string(body - piece.local + 1);
+        };
+        throw ComputationError("the prescribed motions of chain " +
+                               group_.chains[static_cast<std::size_t>(piece.chain)].name +
+                               " contradict its loops: the joint between " + name(loop.inboard) +
+                               " and " + name(loop.outboard) +
+                               " would come apart; prescribe fewer joints, or other motions");
+    }
+}
+
 void ClosedLoops::add_forces(Field<3>& torque, Field<3>& force) const {
     for (std::size_t l = 0; l < joints_.size(); ++l) {
-        LocalLoop const& loop = group_.loops[l];
+        LocalLoop const& loop = group_.loops.own[l];
         dca::AlongAxes<double> const along = dca::along_axes(joints_[l].screw, force_[l]);
         auto const add = [&](std::int64_t body, LoopEnd const& end, double sign) {
             if (body == LoopClosure::ground) return;

@@ -23,6 +23,10 @@ class ClosedLoops {
     /// Sets bias() for a correction: the openings along the joints' directions or, if `velocities`,
     /// their rates.
     void set_opening(bool velocities);
+    /// Throws ComputationError that names the first loop whose two sides still part after a
+    /// correction of velocities, given the response to set_opening(). Only driven joints can cause
+    /// that.
+    void refuse_parting(ConstView<3> const& alpha, ConstView<3> const& acceleration) const;
     /// Largest opening along a restricted direction; lengths are divided by the reach, angles are
     /// in rad.
     double error() const;

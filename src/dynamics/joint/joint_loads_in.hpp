@@ -85,7 +85,7 @@ struct JointLoadsIn {
           in_space(loads),
           has_wrenches(loads.wrenches || group.carried.count() > 0),
           has_forces(has_wrenches || loads.act_on_bodies() ||
-                     (loads.joint_loads && group.joints.has_screws) || group.has_loops),
+                     (loads.joint_loads && group.joints.has_screws) || group.loops.in_scene),
           carried(group.carried.in_scene),
           eliminated(group, eliminates),
           implicit(group, rotor, implicit_step),

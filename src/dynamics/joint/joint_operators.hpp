@@ -104,6 +104,9 @@ void project(JointBodies<Space>& bodies, bool velocities) {
     bodies.closed_loops.set_opening(velocities);
     open.loop_bias = bodies.closed_loops.bias().data();
     bodies.solver.solve(open, bodies.solution.accelerations());
+    if (velocities && bodies.closed_loops.any() && !bodies.group.joints.drives.empty())
+        bodies.closed_loops.refuse_parting(bodies.solution.alpha.view(),
+                                           bodies.solution.acceleration.view());
     JointSteps const still = bodies.at_rest();
     bodies.exchange_ends(still.chains);
     bodies.space.for_each(bodies.group.size,

@@ -194,13 +194,14 @@ std::pair<Vector<double, 8>, Vector<double, 8>> JointSolution::handles_of_loop(
                                            : handle(body, end.arm, end.axes);
     };
     LoopEnds const& ends = loops->ends()[l];
-    return {at(group.loops[l].outboard, ends.outboard), at(group.loops[l].inboard, ends.inboard)};
+    return {at(group.loops.own[l].outboard, ends.outboard),
+            at(group.loops.own[l].inboard, ends.inboard)};
 }
 
 double JointSolution::residual_of_loops() const {
     double worst = 0;
-    for (std::size_t l = 0; loops && l < group.loops.size(); ++l) {
-        LocalLoop const& loop = group.loops[l];
+    for (std::size_t l = 0; loops && l < group.loops.own.size(); ++l) {
+        LocalLoop const& loop = group.loops.own[l];
         LoopEnds const& ends = loops->ends()[l];
         auto const size_at = [&](std::int64_t body, LoopEnd const& end) {
             return body == LoopClosure::ground ? 0.0 : norm(end.arm) + radius_of(group, body);
@@ -258,11 +259,11 @@ JointDefect JointSolution::defect(Communicator const& communicator,
                   DirectionsField(group.size + 1, group.directions),
                   DirectionsField(tips, group.directions),
                   {}};
-    for (std::size_t l = 0; loops && l < group.loops.size(); ++l) {
+    for (std::size_t l = 0; loops && l < group.loops.own.size(); ++l) {
         auto const [outboard, inboard] = handles_of_loop(l);
         d.loop_bias.push_back(opening(outboard, inboard, loops->bias()[l],
-                                      dca::as_screw(group.loops[l].screw),
-                                      group.loops[l].restricted));
+                                      dca::as_screw(group.loops.own[l].screw),
+                                      group.loops.own[l].restricted));
     }
     Vector<double, 8> const before_first = handle_before_first(communicator);
     auto const at_tips = handles_at_tips(communicator);

@@ -85,8 +85,8 @@ BodyResults JointSolution::results(Communicator const& communicator) const {
 }
 
 void JointSolution::add_loop_forces(BodyResults& r) const {
-    for (std::size_t l = 0; loops && l < group.loops.size(); ++l) {
-        LocalLoop const& loop = group.loops[l];
+    for (std::size_t l = 0; loops && l < group.loops.own.size(); ++l) {
+        LocalLoop const& loop = group.loops.own[l];
         bool const grounded = loop.inboard == LoopClosure::ground;
         LoopEnd const& end = loops->ends()[l].inboard;
         Mat3 const to_ground = grounded ? Mat3::identity() : orientation(loop.inboard);

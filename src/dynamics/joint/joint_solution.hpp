@@ -16,6 +16,12 @@ struct JointDefect {
     std::vector<Vector<double, 6>> loop_bias;  // By loop.
 };
 
+/// Fields of MotionView: handle 2 and the axes there, where they move.
+struct MeetingPlaces {
+    ConstView<3> r2;
+    ConstView<6> axes2;
+};
+
 /// Motion, loads and solution of a rank's bodies, with results and residuals computed from them. B
 /// axes unless stated otherwise.
 struct JointSolution {
@@ -26,8 +32,8 @@ struct JointSolution {
     /// Quaternions MotionView::joint_turn and MotionView::orientation.
     ConstView<4> joint_turn, rotation;
     /// Fields of MotionView.
-    ConstView<3> omega, velocity, moving_r2;
-    ConstView<6> moving_axes2;
+    ConstView<3> omega, velocity;
+    MeetingPlaces moving;
     /// Fields of JointChains, with the forces of loops. `force` has no origin if no body has a
     /// force.
     ConstView<3> torque, force, alpha, acceleration;
@@ -60,11 +66,11 @@ struct JointSolution {
     /// Axes of the outboard joint, B. In branched chains, entry k is of the inboard body of body k
     /// at the joint between them; likewise r2().
     Mat3 axes2(std::int64_t k) const {
-        return axes_of(group.joints.moving_meeting() ? moving_axes2.load(k)
+        return axes_of(group.joints.moving_meeting() ? moving.axes2.load(k)
                                                      : group.bodies.axes2[k]);
     }
     Vec3 r2(std::int64_t k) const {
-        return group.joints.moving_meeting() ? moving_r2.load(k) : group.bodies.r2[k];
+        return group.joints.moving_meeting() ? moving.r2.load(k) : group.bodies.r2[k];
     }
     /// Axes of the inboard joint, B.
     Mat3 axes1(std::int64_t k) const {
