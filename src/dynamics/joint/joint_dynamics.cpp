@@ -46,8 +46,8 @@ double JointDynamics::correction() {
                                  found.force,
                                  found.alpha,
                                  found.acceleration,
-                                 found.change_of_alpha,
-                                 found.change_of_acceleration}
+                                 found.change.alpha,
+                                 found.change.acceleration}
                      .relative_change(communicator_);
     });
     return change;

@@ -149,8 +149,7 @@ void with_solution(JointBodies<Space>& bodies, Use const& use) {
     if (!solution.refinement) return use(all);
     auto const &turned = space.read(solution.refinement->alpha),
                &moved = space.read(solution.refinement->acceleration);
-    all.change_of_alpha = turned.view();
-    all.change_of_acceleration = moved.view();
+    all.change = {turned.view(), moved.view()};
     use(all);
 }
 
