@@ -410,9 +410,17 @@ void add_notes(Text& text, Json& json, Scene const& scene,
                std::optional<HostMemory> const& lacking) {
     std::vector<std::string> notes = notes_on(scene, estimate_step_limit(scene));
     if (lacking) notes.push_back(lacking->note());
-    if (scene::has_branches(scene))
+    if (std::any_of(scene.chains.begin(), scene.chains.end(), scene::is_body_tree))
         notes.push_back(
-            "branched chains are predicted as unbranched ones; with short side chains they take "
+            "branched chains of rigid bodies are predicted as unbranched ones, and may take a "
+            "fifth "
+            "of that: --measure shows it");
+    if (std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) {
+            return chain.is_beads() && scene::branches(chain);
+        }))
+        notes.push_back(
+            "branched chains of beads are predicted as unbranched ones; with short side chains "
+            "they take "
             "about twice as long, with many branchings longer: --measure shows it");
     if (std::any_of(scene.chains.begin(), scene.chains.end(),
                     [](ChainSpec const& chain) { return chain.is_cross_linked(); }))

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scene/branches.hpp"
 #include "scene/pose.hpp"
 
 namespace catena::scene {
@@ -22,13 +23,13 @@ Outline outline_of(BeadArrays const& beads) {
     return outline;
 }
 
-Outline outline_of(BodyArrays const& bodies) {
+Outline outline_of(BodyArrays const& bodies, Parents parents) {
     Outline outline;
-    Pose pose;
+    std::vector<Pose> poses;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
-        Pose const next = next_pose(bodies, k, pose);
-        if (k > 0) outline.link = std::max(outline.link, norm(next.origin - pose.origin));
-        pose = next;
+        Pose const inboard = k > 0 ? poses[inboard_of(parents, k)] : Pose{};
+        Pose const& pose = poses.emplace_back(next_pose(bodies, k, inboard));
+        if (k > 0) outline.link = std::max(outline.link, norm(pose.origin - inboard.origin));
         outline.points.push_back(pose.origin);
         outline.points.push_back(pose.origin + to_matrix(pose.orientation) * bodies.com[k]);
         outline.link = std::max(outline.link, norm(bodies.com[k]));
@@ -56,7 +57,7 @@ Outline outline_of(LinkedArrays const& linked) {
 Outline outline_of(ChainSpec const& chain) {
     return chain.is_beads()    ? outline_of(chain.beads)
            : chain.is_linked() ? outline_of(chain.linked)
-                               : outline_of(chain.bodies);
+                               : outline_of(chain.bodies, chain.parent);
 }
 
 }  // namespace catena::scene

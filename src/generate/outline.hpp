@@ -11,7 +11,7 @@ namespace catena::scene {
 /// links.
 struct Outline {
     std::vector<Vec3> points;
-    /// Longest distance between two consecutive points along the chain.
+    /// Longest distance between two points that are neighbours along the chain.
     double link = 0;
 };
 Outline outline_of(ChainSpec const& chain);

@@ -52,6 +52,7 @@ void cut(ChainSpec& chain, std::size_t size) {
     std::erase_if(b.driven, [&](DrivenJoint const& joint) {
         return joint.body >= static_cast<std::int64_t>(size);
     });
+    cut(chain.parent, size);
     chain.tip = Tip::free;
     chain.loops.clear();
     chain.redundant_directions = 0;

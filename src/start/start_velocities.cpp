@@ -6,6 +6,7 @@
 #include "integrate/chain_system.hpp"
 #include "integrate/stepper.hpp"
 #include "mpi/collectives.hpp"
+#include "scene/branch_limits.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
@@ -13,7 +14,8 @@ namespace {
 
 bool is_thermal(ChainSpec const& chain) { return chain.velocities == StartVelocities::thermal; }
 bool has_absolute_coordinates(ChainSpec const& chain) {
-    return !chain.has_loops() && !scene::joint_without_absolute_coordinates(chain);
+    return !chain.has_loops() && !scene::is_body_tree(chain) &&
+           !scene::joint_without_absolute_coordinates(chain);
 }
 
 /// State in absolute coordinates of every body of the scene, on every rank.

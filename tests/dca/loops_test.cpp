@@ -171,6 +171,7 @@ TEST_P(Loops, of_a_planar_linkage_are_redundant_in_space) {
 
 /// A joint of the last body to the ground is the same as a tip or as a loop.
 TEST_P(Loops, act_as_tips_do) {
+    if (GetParam().handles == Handles::articulated) GTEST_SKIP() << "tips have other handles";
     for (JointType const type : types) {
         SCOPED_TRACE(name_of(type));
         Scene tipped = with_backend(scene_of(random_chain(

@@ -9,6 +9,7 @@
 
 #include "generate/branched.hpp"
 #include "generate/link_projection.hpp"
+#include "generate/outline.hpp"
 #include "reader/load_scene.hpp"
 #include "scene/branches.hpp"
 
@@ -204,6 +205,21 @@ TEST(Branched, ProjectionOfARowAgreesWithTheTridiagonalOne) {
     EXPECT_TRUE(scene::LinkProjection().project({row, length}));
     EXPECT_TRUE(scene::LinkProjection().project({tree, length, {}, {}, {}, 0, parent}));
     for (std::size_t k = 0; k < row.size(); ++k) EXPECT_LE(norm(row[k] - tree[k]), 1e-12);
+}
+
+/// Both arms hang on body 1: they point along x and against it.
+TEST(Branched, OutlinesOfBodiesFollowBranches) {
+    std::string const body = "{mass: 1, inertia: [1, 1, 1], ",
+                      joint = "joint: {type: spherical, translation: ";
+    Scene const scene =
+        parse_scene("chains: [{base: free, bodies: [" + body + "joint: {type: free}}, " + body +
+                        joint + "[2, 0, 0]}}, " + body + "parent: 1, " + joint + "[-3, 0, 0]}}]}]",
+                    "s.yaml");
+    scene::Outline const outline = scene::outline_of(scene.chains.at(0));
+    std::vector<double> x;
+    for (Vec3 const& point : outline.points) x.push_back(point[0]);
+    EXPECT_EQ(x, (std::vector<double>{0, 0, 2, 2, -3, -3}));
+    EXPECT_EQ(outline.link, 3);
 }
 
 }  // namespace

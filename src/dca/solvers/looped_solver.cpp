@@ -11,6 +11,7 @@ namespace {
 
 /// Openings beside those of the open chains, scaled, above which another sweep follows.
 double constexpr lost_digits = 0x1p-46;
+int constexpr most_corrections = 2;
 
 Vector<double, 6> unit(int direction) {
     auto v = Vector<double, 6>::zero();
@@ -190,7 +191,7 @@ bool LoopedSolver::correct(LoadsView const& loads, Found const& found) {
 }
 
 /// The forces of loops cancel what the open chains' answer leaves open. Where that has lost digits,
-/// another sweep restores them.
+/// one or two more sweeps restore them.
 void LoopedSolver::solve(LoadsView const& loads, AccelerationsView const& out) {
     Found const own{alpha_.view(), acceleration_.view()};
     open_->solve(loads, {alpha_.view(), acceleration_.view(), {}, {}});
@@ -209,7 +210,8 @@ void LoopedSolver::solve(LoadsView const& loads, AccelerationsView const& out) {
     if (!all.alpha.origin) all.alpha = alpha_.view();
     if (!all.acceleration.origin) all.acceleration = acceleration_.view();
     open_->solve(with, all);
-    if (correct(loads, {all.alpha, all.acceleration})) open_->solve(with, all);
+    for (int i = 0; i < most_corrections && correct(loads, {all.alpha, all.acceleration}); ++i)
+        open_->solve(with, all);
     if (out.loop_force) std::copy(components_.begin(), components_.end(), out.loop_force);
 }
 

@@ -10,8 +10,8 @@ namespace catena::dca {
 
 /// Keeps the matrices of the open chains' solver and, per chain, the factor of one small system.
 /// After the matrix sweep it makes a bias sweep for each restricted direction of the chain whose
-/// loops restrict most. Each solution takes two bias sweeps, or three
-/// where digits would be lost. Redundant directions get the least
+/// loops restrict most. Each solution takes two bias sweeps, or up to
+/// four where digits would be lost. Redundant directions get the least
 /// forces, in the metric of the responses of single bodies; contradictory ones stay open.
 class LoopedSolver final : public ChainSolver {
   public:

@@ -22,6 +22,11 @@ struct MeetingPlaces {
     ConstView<6> axes2;
 };
 
+/// Additions of a refinement to accelerations, B.
+struct RefinedBy {
+    ConstView<3> alpha, acceleration;
+};
+
 /// Motion, loads and solution of a rank's bodies, with results and residuals computed from them. B
 /// axes unless stated otherwise.
 struct JointSolution {
@@ -42,9 +47,7 @@ struct JointSolution {
     ConstDirectionsView bias, joint_force, tip_bias, tip_force;
     ConstView<6> compliance;  // Compliance of implicit joints (ConfigurationView::compliance).
     /// Addition of the last refinement to `alpha` and `acceleration`; no origin without one.
-    struct Change {
-        ConstView<3> alpha{}, acceleration{};
-    } change = {};
+    RefinedBy change{};
     /// Loops of the chains; null without any.
     ClosedLoops const* loops = nullptr;
 

@@ -65,13 +65,13 @@ void update_all(JointBodies<Space>& bodies, bool again) {
     } else {
         kinematics.template sweep<positions>(c.moved.scan, shown, set_motion);
     }
-    if (group.has_closures()) set_closures(bodies);
 }
 template <class Space>
 void update_all(JointBodies<Space>& bodies, bool again) {
     bodies.loads.found_motions();
     bodies.with_positions(
         [&](auto positions) { update_all<decltype(positions)::value>(bodies, again); });
+    if (bodies.group.has_closures()) set_closures(bodies);
 }
 
 /// Scan with one item per run. `relative`: the relative motions are already known.
