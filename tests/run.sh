@@ -164,7 +164,7 @@ check changed-scenes changed_scenes "$([ $long = yes ] && echo 7200 || echo 60)"
 cat "$logs/fuzz.log" "$logs/changed-scenes.log"
 # What the sanitizers and other builds leave to the release build: mathematics and whole runs, which take most of their time. Readers, writers,
 # the command line, dynamics and restarts stay. Vectors' kernels have no sanitizers.
-mathematics=(dca dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics)
+mathematics=(dca dca_stage_kernels dca_branched_stages dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics)
 runs=(force_ranks force_ranks_mpi openmm_runs fixman implicit adaptive at_once simd balance carried_beads command_same_bits command_third_party
       trajectory bench_sampling_copies cases_accuracy cases_slab cases_verdict cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
 # What neither build can run, and what reads no input.

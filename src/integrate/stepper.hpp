@@ -51,7 +51,8 @@ class Stepper {
     /// Adds one projection sweep from now on if `watch` says that one is due and the limit is not
     /// reached. Returns true if one was added.
     bool adapt(SweepWatch& watch, double error, double tolerance);
-    /// Projection sweeps per drift; in joint coordinates, corrections of jointed tips and loops per step.
+    /// Projection sweeps per drift; in joint coordinates, corrections of jointed tips and loops per
+    /// step.
     virtual int sweeps() const = 0;
     /// Number of parts that every drift is split into.
     virtual int parts() const { return 1; }

@@ -172,7 +172,10 @@ constexpr Key loop_keys[] = {
 };
 
 constexpr Key loop_joint_keys[] = {
-    tip_type,
+    {"type",
+     "`revolute`, `universal`, `spherical`, `prismatic`, `helical`, `cylindrical`, `planar3`, "
+     "`weld`",
+     "required", "", "The joint leaves the motions of this type free.", "type: spherical"},
     tip_axis,
     tip_axes,
     tip_pitch,

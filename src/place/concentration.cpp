@@ -16,7 +16,7 @@ namespace catena::scene {
 namespace {
 
 double constexpr noted_miss = 0.02;  // relative
-double constexpr grid = 1e-4;        // nm: resolution of derived edges
+double constexpr per_nm = 1e4;       // steps of derived edges, whose decimals print as they are
 double constexpr most_copies = 1e9;
 
 /// A unit's factor to mg/ml or mmol/l.
@@ -102,7 +102,7 @@ std::int64_t copies_for(Node const& concentration, ChainSpec const& chain, Regio
 Vec3 cube_for(Concentration const& concentration, std::vector<Draft> const& drafts) {
     auto const count = static_cast<double>(drafts.size());
     double const one_nm = chains_in(concentration, total_mass(drafts) / count, 1);
-    double const edge = grid * std::round(std::cbrt(count / one_nm) / grid);
+    double const edge = std::round(per_nm * std::cbrt(count / one_nm)) / per_nm;
     return {{edge, edge, edge}};
 }
 

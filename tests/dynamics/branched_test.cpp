@@ -340,11 +340,6 @@ TEST(BranchedChains, RefuseWhatTheyDoNotSupport) {
     ChainSpec tipped = tree;
     tipped.tip = Tip::jointed;
     EXPECT_NE(refusal({tipped}, {}).find("jointed tip"), std::string::npos);
-    RandomChainOptions options;
-    options.bodies = 4;
-    ChainSpec bodies = random_chain(1, options);
-    bodies.parent = star_parents(3);
-    EXPECT_NE(refusal({bodies}, {}).find("rigid bodies"), std::string::npos);
     EXPECT_EQ(refusal({tree}, {}), "");
 }
 

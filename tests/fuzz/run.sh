@@ -89,7 +89,7 @@ target settings -lyaml-cpp "${files[@]}" "${structures[@]}" src/systems/{pdb_top
     src/foreign/{calvados_charges,calvados_checks,calvados_components,calvados_folder,calvados_forces,calvados_keys,calvados_networks,calvados_pull,calvados_tables,contents,no_polychrom_arguments,package_file,scene_text,settings,system_text}.cpp \
     src/structure/{calvados2,fasta,residue_table}.cpp src/scene/scene.cpp
 if [ -d "$hdf5" ]; then
-    target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{body_datasets,hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/keys/*_keys.cpp src/scene/{freedom,loop_motions,pose}.cpp \
+    target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/bodies/{body_datasets,hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry}.cpp src/keys/*_keys.cpp src/scene/{branches,freedom,loop_motions,loops,pose}.cpp \
         src/io/{memory_limit,trial}.cpp
     target checkpoint -lhdf5_serial "${read_hdf5[@]}" src/io/{checkpoint,checkpoint_file,file_seal,hdf5_data,trial}.cpp
 else

@@ -7,12 +7,12 @@
 namespace catena::test {
 namespace {
 
-/// Glycine is 57.05 amu in CALVADOS 2, and the ends of a chain add 18 amu.
-double constexpr mass_of_ten = 10 * 57.05 + 18;
+/// Glycine is 57.05 amu and serine 87.08 amu in CALVADOS 2; the ends of a chain add 18 amu.
+double constexpr mass_of_ten = 5 * (57.05 + 87.08) + 18;
 double constexpr amu_per_nm3 = 1.66053906892;  // mg/ml
 
 std::string scene_of(std::string const& number, std::string const& rest) {
-    return "chains: [{name: g, sequence: GGGGGGGGGG, model: calvados2" + number + "}]\n" + rest;
+    return "chains: [{name: g, sequence: GSGSGSGSGS, model: calvados2" + number + "}]\n" + rest;
 }
 Scene read(std::string const& number, std::string const& rest) {
     return parse_scene(scene_of(number, rest), "s.yaml");
@@ -79,7 +79,7 @@ TEST(Concentration, of_a_cubic_box_gives_its_edges) {
 
 TEST(Concentration, of_several_components_counts_all_chains) {
     Scene const scene = parse_scene(
-        "chains: [{name: a, count: 3, sequence: GGGGGGGGGG, model: calvados2}, {name: b, count: 5, "
+        "chains: [{name: a, count: 3, sequence: GSGSGSGSGS, model: calvados2}, {name: b, count: 5, "
         "sequence: GGGGGGGGGGGGGGGGGGGG, model: calvados2}]\nbox: {cubic: {concentration: 2 "
         "mmol/l}}\n",
         "s.yaml");

@@ -22,7 +22,7 @@ print(catena.has_openmm, simulation.steps)
 """
 FORCES = """
 import catena
-peptide = {"chains": [{"sequence": "GGGG", "model": "calvados2"}], "forces": {"openmm": {"builder": "calvados2"}},
+peptide = {"chains": [{"sequence": "GSGS", "model": "calvados2"}], "forces": {"openmm": {"builder": "calvados2"}},
            "dynamics": {"integrator": "g-baoab", "step": 0.01}}
 try:
     catena.Simulation(peptide).step(2)

@@ -10,7 +10,7 @@ Refusal const bodies_cases[] = {
     {"body_is_text", "chains: [{base: fixed, bodies: [rod]}]",
      "`rod` is not a map (s.yaml: chains[0].bodies[0], body 1, line 1): give a map with keys among "
      "`mass`, `com`, `inertia`, `joint`, "
-     "`wrench`, `drag`, `force`, `beads`"},
+     "`parent`, `wrench`, `drag`, `force`, `beads`"},
     {"no_mass",
      "chains: [{base: fixed, bodies: [{inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, "
      "1]}}]}]",

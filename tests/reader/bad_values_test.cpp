@@ -68,7 +68,7 @@ Refusal const keys_cases[] = {
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}, weight: 2})y",
      "unknown key `weight` (s.yaml: chains[0].bodies[1].weight, body 2, line 5): use one of "
-     "`mass`, `com`, `inertia`, `joint`, `wrench`, "
+     "`mass`, `com`, `inertia`, `joint`, `parent`, `wrench`, "
      "`drag`, `force`, `beads`"},
     {"unknown_near_in_body", R"y(chains:
   - base: fixed
@@ -121,7 +121,7 @@ forces: {openmm: {bilder: calvados2}})y",
      "`concentration`, `place`, `sequence`, `fasta`, `record`, `pdb`, `chain`, `conformer`, "
      "`gaps`, `sites`, "
      "`bodies`, `generator`, `model`, `positions`, `links`, `base`, `tip`, "
-     "`crosslinks`, `anchor`, "
+     "`crosslinks`, `loops`, `anchor`, "
      "`conformation`, `rigid`, `charge_termini`, "
      "`velocities`"},
     {"nothing_in_chain", "chains: [{name: a}]",

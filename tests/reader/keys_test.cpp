@@ -42,6 +42,11 @@ std::string arm(std::string const& joint, std::string const& chain = "") {
            joint + "}]" + chain + "}]\n";
 }
 
+/// A loop that the second body of arm() closes with the ground.
+std::string looped(std::string const& joint) {
+    return ", loops: [{bodies: [2, 0], joint: " + joint + "}]";
+}
+
 /// Three beads on links, not on one line, with given velocities.
 std::string beads(std::string const& chain = "") {
     return "chains: [{bodies: [{mass: 1, position: [0, 0, 0], velocity: [0, 0, 0]}, {mass: 1, "
@@ -159,9 +164,12 @@ std::map<std::string, std::vector<Place>> places_of_chains() {
          {{prediction() + "}}]\n", "chains[0].rigid."},
           {start + "pdb: " + pdb_file() + ", rigid: {domains: lost.yaml}}]\n",
            "chains[0].rigid."}}},
-        {"tip", {{arm(joints[0]), "chains[0].tip."}}}};
+        {"tip", {{arm(joints[0]), "chains[0].tip."}}},
+        {"loops", {{arm(joints[0], looped(joints[0])), "chains[0].loops[0]."}}}};
     for (std::string const& joint : joints) {
         std::string const at = joint.substr(0, joint.size() - 1) + ", translation: [1, 0, 0]}}";
+        places["loops.joint"].push_back(
+            {arm(joints[0], looped(joint)), "chains[0].loops[0].joint."});
         places["tip.joint"].push_back(
             {arm(joints[0], ", tip: {joint: " + at), "chains[0].tip.joint."});
         places["tip.ring"].push_back(
@@ -294,7 +302,9 @@ TEST(Keys, the_declared_type_of_a_choice_names_all_values) {
             if (list == std::string::npos || !is_about_value(message, place, key)) continue;
             if (message.find("is not a value of") == std::string::npos) continue;
             std::set<std::string> values = quoted_names(message.substr(list));
-            if (map.name.starts_with("tip.")) values.erase("free");
+            if (map.name.starts_with("tip.") || map.name.starts_with("loops."))
+                values.erase("free");
+            if (map.name.starts_with("loops.")) values.erase("link"), values.erase("planar");
             EXPECT_EQ(quoted_names(key.type), values) << map.name << " " << key.name;
             ++choices;
             break;
