@@ -24,7 +24,7 @@ class ChainSystem : public SystemEvaluator {
     /// Returns the largest local backward residual of the last evaluate() over all ranks.
     /// Collective.
     double residual();
-    /// Returns the bound c depth eps of residual().
+    /// Returns the bound c (depth + directions that loops restrict) eps of residual().
     double residual_bound() const;
     /// Returns the motion of all bodies on rank 0. Collective.
     SceneMotion snapshot() const { return Snapshots(*this).motion(); }

@@ -7,6 +7,7 @@
 #include "chain/gather.hpp"
 #include "integrate/flat_arrays.hpp"
 #include "mpi/collectives.hpp"
+#include "scene/loops.hpp"
 #include "terms/force_terms.hpp"
 
 namespace catena {
@@ -26,10 +27,16 @@ double ChainSystem::residual() {
 
 // Each merge adds rounding of a few eps of its terms, and terms pass through at most `depth`
 // merges. c = 32 covers the constants of 6x6 handles (factorisation, two triangular solves, leaf).
+// Solving for the forces of loops adds a few eps per direction that they restrict (Higham, Accuracy
+// and Stability of Numerical Algorithms, 2002, theorem 10.4).
 double ChainSystem::residual_bound() const {
     std::int64_t depth = 1;
     for (SolverReport const& r : solver_reports()) depth = std::max(depth, r.depth);
-    return 32.0 * static_cast<double>(depth) * std::numeric_limits<double>::epsilon() / 2;
+    std::int64_t of_loops = 0;
+    for (ChainSpec const& chain : scene_.chains)
+        of_loops = std::max(of_loops, scene::directions_of_loops(chain));
+    return 32.0 * static_cast<double>(depth + of_loops) * std::numeric_limits<double>::epsilon() /
+           2;
 }
 
 void ChainSystem::check_forces() const {
