@@ -98,6 +98,12 @@ void close_loops(ChainSpec& chain, Node const& loops, Scene& scene) {
         fail(loops, fmt::format("the loops restrict {} directions", all),
              fmt::format("give a chain loops that restrict at most {}", most_loop_directions));
     chain.redundant_directions = redundant_directions(chain);
+    if (std::int64_t const nearby = redundant_nearby(chain); nearby < chain.redundant_directions)
+        scene.note(fmt::format(
+            "of the {} directions that the loops restrict, {} are redundant at the start, and {} "
+            "nearby: this may be a singular position such as a dead centre, at which the loops "
+            "close badly whatever the step; turn a joint by `q`, or move `translation` of the loop",
+            directions_of_loops(chain), chain.redundant_directions, nearby));
     if (degrees_of_freedom(chain) == 0 && chain.bodies.driven.empty())
         scene.note(
             fmt::format("the loops of {} bodies leave no degree of freedom at the start: "

@@ -165,4 +165,24 @@ std::int64_t redundant_directions(ChainSpec const& chain) {
     return chain.has_loops() ? directions_of_loops(chain) - LoopJacobian(chain).rank() : 0;
 }
 
+std::int64_t redundant_nearby(ChainSpec chain) {
+    double constexpr turned = 0.05;
+    double extent = 0;
+    for (Vec3 const& translation : chain.bodies.translation)
+        extent = std::max(extent, norm(translation));
+    int number = 0;
+    for (std::size_t k = 0; k < chain.bodies.size(); ++k) {
+        JointType const type = chain.bodies.joint[k];
+        if (floats(type)) continue;
+        std::array<double, 4>& q = chain.bodies.q[k];
+        double const change = turned * (slides(type) && extent > 0 ? extent : 1);
+        for (int i = 0; i < (is_ball(type) ? 4 : freedom_of(type)); ++i)
+            q[static_cast<std::size_t>(i)] += change * std::sin(1.0 + 2.4 * ++number);
+        if (!is_ball(type)) continue;
+        double const size = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+        for (double& each : q) each /= size;
+    }
+    return redundant_directions(chain);
+}
+
 }  // namespace catena::scene

@@ -22,5 +22,9 @@ std::int64_t directions_of_loops(ChainSpec const&);
 /// Joints with prescribed motion have no part in it. In a singular position more are redundant than
 /// elsewhere.
 std::int64_t redundant_directions(ChainSpec const&);
+/// Returns the same with all joints moved by up to 0.05 rad, so that loops open. A smaller number
+/// than at the start tells of a singular position, such as a dead centre, or of a mechanism that
+/// only moves because of its special dimensions.
+std::int64_t redundant_nearby(ChainSpec);
 
 }  // namespace catena::scene

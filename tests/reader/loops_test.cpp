@@ -46,6 +46,25 @@ TEST(LoopsOfAScene, CountBodiesFromOneAndFixTheirFramesAtTheStart) {
     EXPECT_EQ(scene::degrees_of_freedom(chain), 4 - 2);
 }
 
+/// Two bars whose end is held where they are stretched out, and where they are bent.
+TEST(LoopsOfAScene, AtADeadCentreHaveANote) {
+    auto const held = [](std::string const& q) {
+        std::string const bar =
+            "{mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, "
+            "0, 1], translation: ";
+        return parse_scene("units: si\nchains: [{base: fixed, bodies: [" + bar + "[0, 0, 0]}}, " +
+                               bar + "[1, 0, 0], q: " + q +
+                               "}}], loops: [{bodies: [2, 0], joint: {type: spherical, "
+                               "translation: [1, 0, 0]}}]}]",
+                           "s.yaml");
+    };
+    Scene const straight = held("0"), bent = held("0.5");
+    EXPECT_EQ(straight.chains[0].redundant_directions, 2);
+    EXPECT_TRUE(notes(straight, "2 are redundant at the start, and 1 nearby"));
+    EXPECT_EQ(bent.chains[0].redundant_directions, 1);
+    EXPECT_FALSE(notes(bent, "redundant at the start"));
+}
+
 TEST(LoopsOfAScene, TakeAsManyDegreesOfFreedomAsTheirJacobianHas) {
     auto const freedom = [](std::string const& text) {
         return scene::degrees_of_freedom(parse_scene(text, "s.yaml").chains.at(0));
