@@ -514,7 +514,7 @@ std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes ax
         if (together && (any.is_beads() || any.is_linked()))
             members =
                 compact_order(placed_chains(scene, members), communicator.size(), options.shares);
-        bool const of_tree = !any.is_beads() && scene::branches(any);
+        bool const of_tree = scene::is_body_tree(any);
         bool const of_resisting =
             options.implicit && std::any_of(members.begin(), members.end(),
                                             [&](int c) { return scene::resists(scene.chains[c]); });

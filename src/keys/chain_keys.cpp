@@ -142,6 +142,13 @@ constexpr Key tip_length{
     "length",      "number > 0", "as the start has it", "length", "A link at the tip is this long.",
     "length: 0.38"};
 
+constexpr Key tip_q{"q",
+                    "as `q` of a joint",
+                    "0; identity",
+                    "as of a joint",
+                    "The joint stands at this position at the start.",
+                    "q: 0.3"};
+
 constexpr Key tip_joint_keys[] = {
     tip_type,
     tip_axis,
@@ -151,8 +158,7 @@ constexpr Key tip_joint_keys[] = {
      "This rotation matrix is the orientation of the joint's frame J in the last body."},
     {"translation", "3 numbers", "`[0, 0, 0]`", "length",
      "J has its origin here in the last body; a link starts here.", "translation: [1, 0, 0]"},
-    {"q", "as `q` of a joint", "0; identity", "as of a joint",
-     "The joint stands at this position at the start.", "q: 0.3"},
+    tip_q,
     {"anchor", "3 numbers", "where the start puts it; required by `link`", "length",
      "The ground's frame has its origin at this point of W.", "anchor: [2, 0, 0]"},
     tip_length,
@@ -183,8 +189,7 @@ constexpr Key loop_joint_keys[] = {
      "This rotation matrix is the orientation of the joint's frame J in the first body."},
     {"translation", "3 numbers", "`[0, 0, 0]`", "length",
      "J has its origin here in the first body.", "translation: [1, 0, 0]"},
-    {"q", "as `q` of a joint", "0; identity", "as of a joint",
-     "The joint stands at this position at the start.", "q: 0.3"},
+    tip_q,
 };
 
 constexpr Key ring_keys[] = {

@@ -86,7 +86,7 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
     ChainSpec const& chain = draft.chain;
     Integrator const integrator = scene.dynamics.integrator;
     Node const& at = *root.find("dynamics")->find("integrator");
-    // Joint forces are not implemented for implicit springs.
+    // Forces of implicit springs are known within a step only.
     if (is_implicit(integrator) && scene.output.joint_forces)
         fail(*root.find("output")->find("joint_forces"),
              fmt::format("not in this version: joint forces with integrator {}",
@@ -343,20 +343,18 @@ void check_end_to_end(Node const& root, OutputSpec const& output,
 
 /// Notes that trajectories have no forces of cross-links and loops.
 void note_forces_left_out(Scene& scene, std::vector<Draft> const& drafts) {
-    auto const linked = std::find_if(drafts.begin(), drafts.end(),
-                                     [](Draft const& d) { return d.chain.is_cross_linked(); });
-    if (scene.output.joint_forces && linked != drafts.end())
-        scene.note(
-            fmt::format("`joint_forces` leaves out the forces of cross-links, of chain `{}` for "
-                        "one: `catena solve --json` gives those of a start",
-                        shown(linked->chain.name)));
-    auto const looped = std::find_if(drafts.begin(), drafts.end(),
-                                     [](Draft const& d) { return d.chain.has_loops(); });
-    if (scene.output.joint_forces && looped != drafts.end())
-        scene.note(
-            fmt::format("`joint_forces` leaves out the forces of loops, of chain `{}` for "
-                        "one: `catena solve --json` gives those of a start",
-                        shown(looped->chain.name)));
+    if (!scene.output.joint_forces) return;
+    auto const note = [&](char const* closures, auto const& has) {
+        auto const first = std::find_if(drafts.begin(), drafts.end(),
+                                        [&](Draft const& d) { return has(d.chain); });
+        if (first != drafts.end())
+            scene.note(
+                fmt::format("`joint_forces` leaves out the forces of {}, of chain `{}` for "
+                            "one: `catena solve --json` gives those of a start",
+                            closures, shown(first->chain.name)));
+    };
+    note("cross-links", [](ChainSpec const& chain) { return chain.is_cross_linked(); });
+    note("loops", [](ChainSpec const& chain) { return chain.has_loops(); });
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "scene/branch_limits.hpp"
 #include "scene/integrator.hpp"
 
 namespace catena::terms {
@@ -75,10 +76,8 @@ std::string why_host_alone(Scene const& scene) {
     bool const cross_linked = std::any_of(scene.chains.begin(), scene.chains.end(),
                                           [](ChainSpec const& c) { return c.is_cross_linked(); });
     if (cross_linked) return "cross-linked chains are computed on the host";
-    bool const trees =
-        std::any_of(scene.chains.begin(), scene.chains.end(),
-                    [](ChainSpec const& c) { return c.is_branched() && c.bodies.size() > 0; });
-    if (trees) return "branched chains of rigid bodies are computed on the host";
+    if (std::any_of(scene.chains.begin(), scene.chains.end(), scene::is_body_tree))
+        return "branched chains of rigid bodies are computed on the host";
     bool const loops = std::any_of(scene.chains.begin(), scene.chains.end(),
                                    [](ChainSpec const& c) { return c.has_loops(); });
     return loops ? "chains with `loops` are computed on the host" : "";

@@ -94,6 +94,17 @@ Errors errors(Scene const& scene, oracle::OracleResult<long double> const& exact
             system.residual(), system.residual_bound()};
 }
 
+/// Expects the accelerations of articulated bodies in another scalar, and a residual within its
+/// bound.
+void expect_articulated_bodies(Scene const& scene, Communicator const& communicator) {
+    auto const exact = oracle::aba<long double>(scene.chains[0], {scene.forces.gravity, {}});
+    Errors const e = errors(scene, exact, communicator);
+    // Loop forces grow by the same factor, and their rounding with them.
+    double const grown = growth(scene, exact);
+    EXPECT_LE(e.acceleration, std::max(1e-10, 1e-15 * grown * grown));
+    EXPECT_LE(e.residual, e.bound);
+}
+
 /// All constraints at once, in another scalar and by another solver.
 TEST_P(Loops, agree_with_one_dense_system) {
     double worst = 0;
@@ -118,13 +129,7 @@ TEST_P(Loops, agree_with_articulated_bodies) {
             SCOPED_TRACE(fmt::format("{} {}", name_of(type), seed));
             Scene const scene = with_backend(scene_of(looped_chain(seed, 40, 6, type)));
             ASSERT_EQ(scene.chains[0].loops.size(), 6U);
-            auto const exact =
-                oracle::aba<long double>(scene.chains[0], {scene.forces.gravity, {}});
-            Errors const e = errors(scene, exact, *communicator_);
-            // Loop forces grow by the same factor, and their rounding with them.
-            double const grown = growth(scene, exact);
-            EXPECT_LE(e.acceleration, std::max(1e-10, 1e-15 * grown * grown));
-            EXPECT_LE(e.residual, e.bound);
+            expect_articulated_bodies(scene, *communicator_);
         }
 }
 
@@ -146,12 +151,7 @@ TEST_P(Loops, close_in_trees_as_in_chains) {
                                                                  std::sqrt(random.uniform())));
             add_random_loops(chain, seed, 4, type);
             Scene const scene = with_backend(scene_of(chain));
-            auto const exact =
-                oracle::aba<long double>(scene.chains[0], {scene.forces.gravity, {}});
-            Errors const e = errors(scene, exact, *communicator_);
-            double const grown = growth(scene, exact);
-            EXPECT_LE(e.acceleration, std::max(1e-10, 1e-15 * grown * grown));
-            EXPECT_LE(e.residual, e.bound);
+            expect_articulated_bodies(scene, *communicator_);
         }
 }
 
